@@ -171,6 +171,12 @@ impl Solver {
         self.linear().map(|linear| linear.joints)
     }
 
+    /// No linear axis goes farther than this times the way of the tip, where the rotary axes stand; infinite where they
+    /// stand between the linear ones, or there are more than three of these.
+    pub fn linear_reach(&self) -> f64 {
+        self.linear().map_or(f64::INFINITY, |linear| linear.reach)
+    }
+
     /// The rotary angles of a branch.
     #[inline]
     pub fn angles(&self, branches: &Branches, index: usize) -> RotarySet {

@@ -1,0 +1,159 @@
+//! One convex piece of a body.
+
+use nalgebra::Vector3;
+use parry3d_f64::math::Vector;
+use parry3d_f64::shape::SupportMap;
+
+use crate::distance::Placement;
+
+/// A convex piece, mm: its core, and all that is within `round` of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Convex {
+    /// What is inside.
+    pub core: Core,
+    /// How far it goes beyond its core on all sides.
+    pub round: f64,
+}
+
+/// The core of a convex piece, mm.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Core {
+    /// What two discs about the same axis span: cylinder, cone, frustum, disc, line or point.
+    Frustum {
+        /// Centres of the discs.
+        ends: [Vector3<f64>; 2],
+        /// Axis, unit vector.
+        axis: Vector3<f64>,
+        /// Radii of the discs.
+        radii: [f64; 2],
+    },
+    /// A box of any direction.
+    Block {
+        /// Its middle.
+        centre: Vector3<f64>,
+        /// From the middle to three of its faces, square to one another.
+        half: [Vector3<f64>; 3],
+    },
+    /// A triangle.
+    Triangle([Vector3<f64>; 3]),
+}
+
+impl Core {
+    /// The point farthest along `along`, which need not be a unit vector.
+    pub fn support(&self, along: Vector3<f64>) -> Vector3<f64> {
+        match self {
+            Self::Frustum { ends, axis, radii } => {
+                let across = along - axis * axis.dot(&along);
+                let out = across.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+                let [first, last] = [0, 1].map(|end| ends[end] + out * radii[end]);
+                if along.dot(&first) > along.dot(&last) { first } else { last }
+            }
+            Self::Block { centre, half } => half.iter().fold(*centre, |point, half| {
+                if along.dot(half) > 0.0 { point + half } else { point - half }
+            }),
+            Self::Triangle([a, b, c]) => {
+                let [x, y, z] = [a, b, c].map(|corner| along.dot(corner));
+                match (x >= y && x >= z, y >= z) {
+                    (true, _) => *a,
+                    (false, true) => *b,
+                    (false, false) => *c,
+                }
+            }
+        }
+    }
+
+    /// A point in it.
+    pub fn centre(&self) -> Vector3<f64> {
+        match self {
+            Self::Frustum { ends: [first, last], .. } => (first + last) * 0.5,
+            Self::Block { centre, .. } => *centre,
+            Self::Triangle([a, b, c]) => (a + b + c) / 3.0,
+        }
+    }
+
+    /// Points whose hull, with the discs' radii around them, holds it: each with that radius.
+    fn corners(&self) -> Vec<(Vector3<f64>, f64)> {
+        match self {
+            Self::Frustum { ends, radii, .. } => {
+                ends.iter().copied().zip(radii.iter().copied()).collect()
+            }
+            Self::Block { centre, half: [x, y, z] } => {
+                let sides = [-1.0, 1.0];
+                let corner = |i: f64, j: f64, k: f64| (centre + x * i + y * j + z * k, 0.0);
+                let edge = |i, j| sides.map(|k| corner(i, j, k));
+                let faces = sides.map(|i| sides.map(|j| edge(i, j)));
+                faces.into_iter().flatten().flatten().collect()
+            }
+            Self::Triangle(corners) => corners.map(|corner| (corner, 0.0)).to_vec(),
+        }
+    }
+
+    fn placed(&self, at: &Placement) -> Self {
+        match self {
+            Self::Frustum { ends, axis, radii } => Self::Frustum {
+                ends: ends.map(|end| at.point(end)),
+                axis: at.direction(*axis),
+                radii: *radii,
+            },
+            Self::Block { centre, half } => {
+                Self::Block { centre: at.point(*centre), half: half.map(|half| at.direction(half)) }
+            }
+            Self::Triangle(corners) => Self::Triangle(corners.map(|corner| at.point(corner))),
+        }
+    }
+}
+
+impl Convex {
+    /// A ball, mm.
+    pub fn ball(centre: Vector3<f64>, radius: f64) -> Self {
+        let core = Core::Frustum { ends: [centre; 2], axis: Vector3::z(), radii: [0.0; 2] };
+        Self { core, round: radius }
+    }
+
+    /// A box between two corners, along the frame's axes, mm.
+    pub fn block(low: Vector3<f64>, high: Vector3<f64>) -> Self {
+        let half = (high - low) * 0.5;
+        let half = [0, 1, 2].map(|axis| Vector3::ith(axis, half[axis]));
+        Self { core: Core::Block { centre: (low + high) * 0.5, half }, round: 0.0 }
+    }
+
+    /// A cylinder or a frustum between two points, mm.
+    pub fn frustum(ends: [Vector3<f64>; 2], axis: Vector3<f64>, radii: [f64; 2]) -> Self {
+        Self { core: Core::Frustum { ends, axis, radii }, round: 0.0 }
+    }
+
+    /// A triangle, mm.
+    pub fn triangle(corners: [Vector3<f64>; 3]) -> Self {
+        Self { core: Core::Triangle(corners), round: 0.0 }
+    }
+
+    /// The piece elsewhere.
+    pub fn placed(&self, at: &Placement) -> Self {
+        Self { core: self.core.placed(at), round: self.round }
+    }
+
+    /// A sphere that holds it: centre and radius, mm.
+    pub fn sphere(&self) -> (Vector3<f64>, f64) {
+        let centre = self.core.centre();
+        let corners = self.core.corners();
+        let far = corners.iter().map(|(corner, radius)| match self.core {
+            // The rim is square to the axis, the centre on it.
+            Core::Frustum { .. } => libm::hypot((corner - centre).norm(), *radius),
+            _ => (corner - centre).norm(),
+        });
+        (centre, far.fold(0.0, f64::max) + self.round)
+    }
+
+    /// All numbers of it are finite and closer than [`crate::FARTHEST`].
+    pub fn is_near(&self) -> bool {
+        let (centre, radius) = self.sphere();
+        centre.iter().all(|value| libm::fabs(*value) + radius <= crate::FARTHEST)
+    }
+}
+
+impl SupportMap for Core {
+    fn local_support_point(&self, along: Vector) -> Vector {
+        let [x, y, z] = self.support(Vector3::new(along.x, along.y, along.z)).into();
+        Vector::new(x, y, z)
+    }
+}

@@ -1,0 +1,204 @@
+//! How far two shapes are apart.
+//!
+//! A search (GJK) finds the nearest points of two convex pieces; what it says is not taken for granted. The direction from
+//! one point to the other is that of two parallel planes which hold each piece on its own side, as far as the farthest
+//! points of both along it tell: their distance is a lower bound, however the direction was found.
+
+use nalgebra::{Matrix3, Vector3};
+use parry3d_f64::math::{Pose, Vector};
+use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_points};
+
+use crate::ALLOWANCE;
+use crate::convex::Convex;
+use crate::shape::{Below, Shape};
+
+/// Pieces that are no nearer than this share of the nearest found are not looked at.
+const CLOSE: f64 = 0.98;
+
+/// Where a link stands in the frame of another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Rotation.
+    pub rotation: Matrix3<f64>,
+    /// Shift, mm.
+    pub shift: Vector3<f64>,
+}
+
+impl Placement {
+    /// Where both frames are one.
+    pub fn identity() -> Self {
+        Self { rotation: Matrix3::identity(), shift: Vector3::zeros() }
+    }
+
+    /// A point there.
+    pub fn point(&self, point: Vector3<f64>) -> Vector3<f64> {
+        self.rotation * point + self.shift
+    }
+
+    /// A direction there.
+    pub fn direction(&self, direction: Vector3<f64>) -> Vector3<f64> {
+        self.rotation * direction
+    }
+
+    /// The point of the frame itself that stands on `point`.
+    pub fn back(&self, point: Vector3<f64>) -> Vector3<f64> {
+        self.rotation.transpose() * (point - self.shift)
+    }
+}
+
+/// What is known of how far two shapes are apart, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apart {
+    /// They are no nearer: proven. Zero or less: nothing is.
+    pub at_least: f64,
+    /// They are no farther: the distance of two points of them; zero where they overlap.
+    pub at_most: f64,
+    /// Where that is, in the frame of the first.
+    pub point: Vector3<f64>,
+    /// The pieces that are nearest.
+    pub nearest: [usize; 2],
+}
+
+/// Two convex pieces, in one frame.
+pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
+    let pose = Pose::IDENTITY;
+    let (from, to) = (one.core.centre(), other.core.centre());
+    let start = (to - from).try_normalize(1e-12).unwrap_or_else(Vector3::x);
+    let mut simplex = VoronoiSimplex::new();
+    let start = Vector::new(start.x, start.y, start.z);
+    simplex.reset(CsoPoint::from_shapes(&pose, &one.core, &other.core, start));
+    let found = closest_points(&pose, &one.core, &other.core, f64::MAX, true, &mut simplex);
+    let of = |vector: Vector| Vector3::new(vector.x, vector.y, vector.z);
+    let round = one.round + other.round;
+    let mut apart =
+        Apart { at_least: 0.0, at_most: 0.0, point: (from + to) * 0.5, nearest: [0; 2] };
+    let along = match found {
+        GJKResult::ClosestPoints(first, last, along) => {
+            let (first, last) = (of(first), of(last));
+            apart.point = (first + last) * 0.5;
+            apart.at_most = ((last - first).norm() - round).max(0.0);
+            [last - first, of(along)]
+        }
+        GJKResult::Intersection => return apart,
+        // The search has not come to an end: what a direction proves still holds.
+        GJKResult::NoIntersection(along) | GJKResult::Proximity(along) => {
+            apart.at_most = ((to - from).norm() - round).max(0.0);
+            [to - from, of(along)]
+        }
+    };
+    for along in along {
+        let Some(along) = along.try_normalize(1e-300) else { continue };
+        let near = along.dot(&other.core.support(-along));
+        let far = along.dot(&one.core.support(along));
+        apart.at_least = apart.at_least.max(near - far - round);
+    }
+    // Rounding: what is proven is no more than what was found.
+    apart.at_least = (apart.at_least.min(apart.at_most) - ALLOWANCE).max(0.0);
+    apart
+}
+
+/// Two shapes, the second placed in the frame of the first; `guess` are pieces that may be the nearest. What a mesh encloses
+/// is not looked at.
+pub fn of_shapes(one: &Shape, other: &Shape, at: &Placement, guess: [usize; 2]) -> Apart {
+    let mut search = Search { one, other, at, best: None, passed: f64::INFINITY };
+    search.pieces(guess);
+    search.nodes(0, 0);
+    let mut apart = search.best.unwrap_or(Apart {
+        at_least: 0.0,
+        at_most: 0.0,
+        point: Vector3::zeros(),
+        nearest: guess,
+    });
+    apart.at_least = apart.at_least.min(search.passed).max(0.0);
+    apart
+}
+
+/// One of the shapes encloses a part of the other.
+pub(crate) fn encloses(one: &Shape, other: &Shape, at: &Placement) -> Option<Vector3<f64>> {
+    let held = |shape: &Shape, point| shape.shells.iter().any(|shell| shell.holds(point));
+    let inner = other.points().into_iter().map(|point| at.point(point));
+    let inner = inner.into_iter().find(|point| held(one, *point));
+    inner.or_else(|| one.points().into_iter().find(|point| held(other, at.back(*point))))
+}
+
+struct Search<'a> {
+    one: &'a Shape,
+    other: &'a Shape,
+    at: &'a Placement,
+    best: Option<Apart>,
+    /// The least that is proven of what was not looked at, mm.
+    passed: f64,
+}
+
+impl Search<'_> {
+    fn at_most(&self) -> f64 {
+        self.best.map_or(f64::INFINITY, |best| best.at_most)
+    }
+
+    fn pieces(&mut self, [first, last]: [usize; 2]) {
+        let (Some(one), Some(other)) = (self.one.pieces.get(first), self.other.pieces.get(last))
+        else {
+            return;
+        };
+        let found = of_convex(one, &other.placed(self.at));
+        let found = Apart { nearest: [first, last], ..found };
+        self.best = Some(match self.best {
+            Some(best) => {
+                let at_least = best.at_least.min(found.at_least);
+                let nearer = if found.at_most < best.at_most { found } else { best };
+                Apart { at_least, ..nearer }
+            }
+            None => found,
+        });
+    }
+
+    /// No part of one node is nearer than this to one of the other, mm.
+    fn apart(&self, one: usize, other: usize) -> f64 {
+        let (one, other) = (&self.one.nodes[one], &self.other.nodes[other]);
+        (self.at.point(other.centre) - one.centre).norm() - one.radius - other.radius - ALLOWANCE
+    }
+
+    fn nodes(&mut self, one: usize, other: usize) {
+        let bound = self.apart(one, other);
+        // Nothing is nearer than touching.
+        if bound >= CLOSE * self.at_most() || self.at_most() <= 0.0 {
+            self.passed = self.passed.min(bound);
+            return;
+        }
+        let (first, last) = (&self.one.nodes[one], &self.other.nodes[other]);
+        let pairs = match (first.below, last.below) {
+            (Below::Pieces(first, count), Below::Pieces(last, others)) => {
+                for place in first..first + count {
+                    for beside in last..last + others {
+                        self.pieces_within([place, beside]);
+                    }
+                }
+                return;
+            }
+            (Below::Nodes(below), Below::Nodes(_)) if first.radius > last.radius => {
+                below.map(|below| (below, other))
+            }
+            (_, Below::Nodes(below)) => below.map(|below| (one, below)),
+            (Below::Nodes(below), _) => below.map(|below| (below, other)),
+        };
+        let [near, far] = pairs;
+        let [near, far] = match self.apart(near.0, near.1) > self.apart(far.0, far.1) {
+            true => [far, near],
+            false => [near, far],
+        };
+        self.nodes(near.0, near.1);
+        self.nodes(far.0, far.1);
+    }
+
+    /// Two pieces, unless their spheres are far enough apart.
+    fn pieces_within(&mut self, [first, last]: [usize; 2]) {
+        let (centre, radius) = self.one.pieces[first].sphere();
+        let (beside, reach) = self.other.pieces[last].sphere();
+        let bound = (self.at.point(beside) - centre).norm() - radius - reach - ALLOWANCE;
+        if bound >= CLOSE * self.at_most() || self.at_most() <= 0.0 {
+            self.passed = self.passed.min(bound);
+            return;
+        }
+        self.pieces([first, last]);
+    }
+}

@@ -1,0 +1,140 @@
+//! Two bodies, and how far one can come nearer to the other on a piece of a way.
+
+use nalgebra::Vector3;
+use post_machine::kinematics::chain::turn;
+use post_machine::kinematics::{Chain, Joint, Joints, Trace};
+
+use crate::distance::Placement;
+use crate::piece::Piece;
+
+/// One body seen from the link of another: the axes between them, with the middle of the body as what these carry.
+#[derive(Clone, Debug)]
+pub struct View {
+    chain: Chain,
+    /// Place in the machine's chain of each of its axes.
+    axes: Vec<usize>,
+    /// All of the body is within this of its middle, mm.
+    radius: f64,
+}
+
+impl View {
+    /// The body on link `of` with all of it within `radius` of `centre` (mm, machine frame, all axes at zero), seen from
+    /// link `from`.
+    pub fn new(
+        joints: &[Joint],
+        from: usize,
+        of: usize,
+        centre: Vector3<f64>,
+        radius: f64,
+    ) -> Self {
+        let axes: Vec<usize> =
+            if from <= of { (from..of).collect() } else { (of..from).rev().collect() };
+        // Towards the part every axis goes the other way.
+        let sense = if from <= of { 1.0 } else { -1.0 };
+        let between = axes.iter().map(|place| {
+            let joint = joints[*place];
+            Joint { direction: joint.direction * sense, ..joint }
+        });
+        let chain = Chain::new(between.collect(), Vector3::zeros(), centre, Vector3::z());
+        Self { chain, axes, radius }
+    }
+
+    /// Values of its own axes.
+    fn of(&self, joints: &Joints) -> Joints {
+        let mut own = Joints::default();
+        for (value, place) in own.iter_mut().zip(&self.axes) {
+            *value = joints[*place];
+        }
+        own
+    }
+
+    /// Where the middle of the body is, mm, frame of the other's link.
+    pub fn centre(&self, joints: &Joints) -> Vector3<f64> {
+        self.chain.forward(&self.of(joints)).tip
+    }
+
+    /// Where its link stands in the frame of the other's.
+    pub fn placement(&self, joints: &Joints) -> Placement {
+        let own = self.of(joints);
+        let turns = self.chain.turns(&own);
+        let mut at = Placement::identity();
+        for (place, joint) in self.chain.joints().iter().enumerate().rev() {
+            if !joint.rotary {
+                at.shift += joint.direction * own[place];
+                continue;
+            }
+            let (sine, cosine) = turns.of(place);
+            let turned = |vector| turn(vector, joint.direction, sine, cosine);
+            for column in 0..3 {
+                let axis: Vector3<f64> = at.rotation.column(column).into();
+                at.rotation.set_column(column, &turned(axis));
+            }
+            at.shift = joint.point + turned(at.shift - joint.point);
+        }
+        at
+    }
+
+    /// No point of the body is farther from where it is at `known` on any of `piece`, mm; `centre` is its middle there.
+    ///
+    /// Where the axes go linearly, the middle strays from the line between its ends by no more than an eighth of the bound
+    /// on its second derivative, and no point of that line is farther away than an end of it. A point of the body goes
+    /// besides as far as the turn of its frame takes it about the middle; turns of several axes add up at most.
+    pub fn reach(&self, known: &Joints, centre: Vector3<f64>, piece: &Piece) -> f64 {
+        let ends = piece.ends.each_ref().map(|joints| self.of(joints));
+        let known = self.of(known);
+        let far = |place: usize| {
+            let [from, to] = [0, 1].map(|end: usize| libm::fabs(ends[end][place] - known[place]));
+            from.max(to)
+        };
+        if piece.independent {
+            return self.levers(&known, far);
+        }
+        let joints = self.chain.joints();
+        let turned: f64 = (0..joints.len()).filter(|place| joints[*place].rotary).map(far).sum();
+        let [from, to] = ends.each_ref().map(|ends| (self.chain.forward(ends).tip - centre).norm());
+        let bend = self.chain.bend_by_arms([&ends[0], &ends[1]]);
+        from.max(to) + bend / 8.0 + piece.stray + chord(turned) * self.radius
+    }
+
+    /// As [`View::reach`], wherever each axis stands within what `far` has of it, mm or radians from `known`: axis by axis
+    /// from the body on, each turns no point farther than its own distance from the line, which those behind it may have
+    /// lengthened.
+    fn levers(&self, known: &Joints, far: impl Fn(usize) -> f64) -> f64 {
+        let mut trace =
+            Trace { joints: *known, turns: self.chain.turns(known), ..Trace::default() };
+        self.chain.trace(&mut trace);
+        let mut moved = 0.0;
+        for (place, joint) in self.chain.joints().iter().enumerate().rev() {
+            moved += match joint.rotary {
+                true => {
+                    let lever = trace.tip_rates[place].norm() + self.radius + moved;
+                    chord(far(place)) * lever
+                }
+                false => far(place),
+            };
+        }
+        moved
+    }
+
+    /// The axis of the machine whose way over `piece` moves the body most.
+    pub fn widest(&self, piece: &Piece) -> Option<(usize, f64)> {
+        let own = self.of(&piece.middle);
+        let mut trace = Trace { joints: own, turns: self.chain.turns(&own), ..Trace::default() };
+        self.chain.trace(&mut trace);
+        let way = |place: usize| {
+            let axis = self.axes[place];
+            let way = libm::fabs(piece.ends[1][axis] - piece.ends[0][axis]);
+            match self.chain.joints()[place].rotary {
+                true => way * (trace.tip_rates[place].norm() + self.radius),
+                false => way,
+            }
+        };
+        let ways = (0..self.axes.len()).map(|place| (self.axes[place], way(place)));
+        ways.max_by(|one, other| one.1.total_cmp(&other.1))
+    }
+}
+
+/// How far a point goes that is turned by `angle` about a line at the distance 1, and on the way: no farther.
+fn chord(angle: f64) -> f64 {
+    2.0 * libm::sin(0.5 * angle.min(std::f64::consts::PI))
+}

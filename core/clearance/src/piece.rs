@@ -1,0 +1,184 @@
+//! A part of a way, and between which axis values all axes stay on it.
+
+use nalgebra::Vector3;
+use post_machine::kinematics::{Joints, MAX_AXES, Solver, TcpBlock, Trace};
+use post_motion::path::{BSpline, Curve, Interpolation, Stance, turns};
+
+/// Of a piece as short as this of a way it is known how its axes go, or never will be.
+const SHORTEST: f64 = 1.0 / 1024.0;
+
+/// How a machine goes from one stance to another.
+#[derive(Clone, Copy, Debug)]
+pub struct Way<'a> {
+    /// The machine with the tool that the way is of.
+    pub solver: &'a Solver,
+    /// How the control leads it.
+    pub interpolation: &'a Interpolation,
+    /// Where it begins and ends.
+    pub ends: [&'a Stance; 2],
+    /// Each axis goes for itself, from where it stands to where it shall: they need not arrive together.
+    pub independent: bool,
+}
+
+/// Part of a way.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// Axis values at its ends, mm and radians.
+    pub ends: [Joints; 2],
+    /// Axis values at a place of it.
+    pub middle: Joints,
+    /// How far all axes together stray at most from the straight line between the ends, mm: they are linear ones.
+    pub stray: f64,
+    /// The axes go for themselves between the ends, anywhere in the box that these span.
+    pub independent: bool,
+    /// Shares of the way, 0 to 1.
+    share: [f64; 2],
+}
+
+impl Piece {
+    /// A machine that stands.
+    pub fn at(joints: &Joints) -> Self {
+        Self {
+            ends: [*joints; 2],
+            middle: *joints,
+            stray: 0.0,
+            independent: false,
+            share: [0.0, 1.0],
+        }
+    }
+
+    /// The halves of a piece of `way`; of a box those across the axis `widest`. None where nothing is proven of one.
+    pub fn halves(&self, way: &Way<'_>, widest: usize) -> Option<[Self; 2]> {
+        let [from, to] = self.ends;
+        if self.independent {
+            let half = |ends: [Joints; 2]| {
+                let middle = middle(&ends);
+                Self { ends, middle, ..self.clone() }
+            };
+            let (mut first, mut last) = (to, from);
+            first[widest] = self.middle[widest];
+            last[widest] = self.middle[widest];
+            return Some([half([from, first]), half([last, to])]);
+        }
+        let [start, end] = self.share;
+        let cut = 0.5 * (start + end);
+        Some([way.piece([start, cut], &from)?, way.piece([cut, end], &self.middle)?])
+    }
+}
+
+fn middle([from, to]: &[Joints; 2]) -> Joints {
+    std::array::from_fn(|place| 0.5 * (from[place] + to[place]))
+}
+
+impl Way<'_> {
+    /// All of it. None where nothing is proven of how its axes go.
+    pub fn whole(&self) -> Option<Piece> {
+        let ends = self.ends.map(|stance| stance.joints);
+        let moving = (0..MAX_AXES).filter(|place| ends[0][*place] != ends[1][*place]).count();
+        // One axis alone comes by all that is between its ends, whenever.
+        if self.independent && moving > 1 && *self.interpolation == Interpolation::Axes {
+            let middle = middle(&ends);
+            return Some(Piece { ends, middle, independent: true, ..Piece::at(&middle) });
+        }
+        self.piece([0.0, 1.0], &ends[0])
+    }
+
+    /// The part of it between two shares, whose axes are near `near` where it begins.
+    fn piece(&self, share: [f64; 2], near: &Joints) -> Option<Piece> {
+        let at = |t: f64, near: &Joints| {
+            let stance = self.ends.iter().zip([0.0, 1.0]).find(|(_, end)| *end == t);
+            match stance {
+                Some((stance, _)) => Some(stance.joints),
+                None => self.interpolation.joints_at(self.solver, self.ends, t, near).ok(),
+            }
+        };
+        let from = at(share[0], near)?;
+        let middle = at(0.5 * (share[0] + share[1]), &from)?;
+        let to = at(share[1], &middle)?;
+        let mut piece = Piece { ends: [from, to], middle, stray: 0.0, independent: false, share };
+        if *self.interpolation == Interpolation::Axes {
+            return Some(piece);
+        }
+        let turning = turns(self.solver.chain(), self.ends);
+        if turning && *self.interpolation == Interpolation::TipAndAxis {
+            return None;
+        }
+        let curved = self.curved(share)?;
+        let reach = self.solver.linear_reach();
+        let mut stray = if curved > 0.0 { reach * curved } else { 0.0 };
+        if turning {
+            let tip = self.interpolation.curve().at(self.ends.map(|end| end.pose.tip), share[1]);
+            stray += TcpBlock::bend_by_arms(self.solver, [&from, &to], tip) / 8.0;
+        }
+        let sliding = self.solver.chain().joints().iter().filter(|joint| !joint.rotary).count();
+        piece.stray = stray * sliding as f64;
+        if !piece.stray.is_finite() {
+            piece = self.boxed(piece)?;
+        }
+        // Of a piece that turns too far nothing is known, but of its halves; of one that turns little nothing ever will be.
+        (piece.stray.is_finite() || share[1] - share[0] > SHORTEST).then_some(piece)
+    }
+
+    /// A piece whose tip goes straight, by the ranges of its linear axes: where rotary axes stand between these. A piece
+    /// that turns far is none, and is halved.
+    fn boxed(&self, piece: Piece) -> Option<Piece> {
+        let unknown = Piece { stray: f64::INFINITY, ..piece.clone() };
+        if self.interpolation.is_curved() {
+            return Some(unknown);
+        }
+        let chain = self.solver.chain();
+        let [from, to] = piece.ends.map(|joints| {
+            let mut trace = Trace { joints, turns: chain.turns(&joints), ..Trace::default() };
+            chain.trace(&mut trace);
+            trace
+        });
+        let Some(block) = TcpBlock::new(self.solver, 0.0, &from, &to) else {
+            return Some(unknown);
+        };
+        let Some(range) = block.slides(&[0.0; MAX_AXES], 0.0) else {
+            return Some(unknown);
+        };
+        // The axis and the line between its ends are both within its range.
+        let stray = block.sliding().map(|place| range.most[place] - range.least[place]);
+        Some(Piece { stray: stray.iter().sum(), ..piece })
+    }
+
+    /// How far the tip strays from the straight line between two shares, mm: none where that is not known.
+    fn curved(&self, [from, to]: [f64; 2]) -> Option<f64> {
+        let tips = self.ends.map(|stance| stance.pose.tip);
+        match self.interpolation.curve() {
+            Curve::Straight => Some(0.0),
+            Curve::Arc { centre, normal, sweep } => {
+                let arms = tips.map(|tip| {
+                    let arm = tip - centre;
+                    (arm - normal * normal.dot(&arm)).norm()
+                });
+                let [first, last] = arms;
+                // Radius and turn go evenly: r'' of the arm is r·sweep² towards the axis and twice dr·sweep across it.
+                let bend = first.max(last) * sweep * sweep
+                    + 2.0 * libm::fabs(last - first) * libm::fabs(*sweep);
+                Some(bend * (to - from) * (to - from) / 8.0)
+            }
+            Curve::Spline(spline) => {
+                let stray = hull(spline, [from, to]);
+                stray.is_finite().then_some(stray)
+            }
+        }
+    }
+}
+
+/// Diameter of a box of the poles that the spline depends on between two shares, mm: it stays within their hull, as its
+/// weights lie above zero, and so does the line between its ends.
+fn hull(spline: &BSpline, share: [f64; 2]) -> f64 {
+    let [first, last] = spline.range();
+    let [from, to] = share.map(|share| first + (last - first) * share);
+    let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    for (place, (pole, _)) in spline.poles.iter().enumerate() {
+        let ends = [place, place + spline.degree + 1].map(|knot| spline.knots.get(knot));
+        let [Some(begins), Some(ends)] = ends else { return f64::INFINITY };
+        if *begins <= to && *ends >= from {
+            (low, high) = (low.inf(pole), high.sup(pole));
+        }
+    }
+    (high - low).norm()
+}

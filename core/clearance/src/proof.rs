@@ -1,0 +1,378 @@
+//! All pairs of bodies along a program.
+//!
+//! A distance that was found at one pose holds, less what one body can come nearer to the other, for every pose that
+//! follows: it is a budget that motions use up, and it is computed again where it is spent. Where that is not enough the
+//! way is halved.
+
+use nalgebra::Vector3;
+use post_machine::kinematics::{Joint, Joints};
+
+use crate::ALLOWANCE;
+use crate::distance::{self, Apart};
+use crate::pair::View;
+use crate::piece::{Piece, Way};
+use crate::shape::Shape;
+
+/// Pieces of one motion that a pair is looked at on; what is not proven then is not.
+const MOST_PIECES: u64 = 1 << 13;
+
+/// The nearest approach is known to this share of it: where the rest cannot be nearer, no distance is computed.
+const CLOSE: f64 = 0.95;
+
+/// What a body is, for what it may touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BodyKind {
+    /// A part of the machine.
+    Machine,
+    /// What holds the part.
+    Fixture,
+    /// What is cut.
+    Stock,
+    /// What of the tool does not cut.
+    Holder,
+    /// What of the tool cuts.
+    Cutter,
+}
+
+/// A body.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// What messages call it.
+    pub name: String,
+    /// What it is.
+    pub kind: BodyKind,
+    /// The link that it hangs on: 0 is that of the part, n what follows the nth axis.
+    pub link: usize,
+    /// Its shape, machine frame, all axes at zero.
+    pub shape: Shape,
+}
+
+/// What is to be kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rules {
+    /// Distance at feed, mm.
+    pub keep: f64,
+    /// Distance at rapid, mm.
+    pub rapid: f64,
+    /// What cannot be told apart from a distance that is too short by less than this counts as one, mm.
+    pub within: f64,
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self { keep: 0.0, rapid: 0.0, within: 0.01 }
+    }
+}
+
+/// A motion that is to be proven.
+#[derive(Clone, Copy, Debug)]
+pub struct Move<'a> {
+    /// How it goes.
+    pub way: Way<'a>,
+    /// At rapid traverse.
+    pub rapid: bool,
+    /// Line of the program.
+    pub line: u64,
+}
+
+/// What is not clear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The bodies overlap or touch at a pose that is known.
+    Hits,
+    /// They come nearer than is to be kept, at a pose that is known.
+    Near,
+    /// Neither is proven.
+    Unproven,
+}
+
+/// Where two bodies are not proven to be clear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// What it is.
+    pub verdict: Verdict,
+    /// Line of the program.
+    pub line: u64,
+    /// Axis values, mm and radians.
+    pub joints: Joints,
+    /// They are no farther apart there, mm.
+    pub at_most: f64,
+    /// What is to be kept there, mm.
+    pub keep: f64,
+    /// The place, mm, frame of the link of the first body.
+    pub point: Vector3<f64>,
+}
+
+/// What is known of two bodies along the program.
+#[derive(Clone, Debug)]
+pub struct PairResult {
+    /// Places of both bodies in [`Proof::bodies`].
+    pub bodies: [usize; 2],
+    /// They are never nearer than this where they are proven to be clear, mm; infinite before any motion.
+    pub clear_by: f64,
+    /// The nearest that was found, mm, and the line; not looked for closer than by five in a hundred.
+    pub nearest: (f64, u64),
+    /// The first place where they are not clear, and the first that hits if there is one.
+    pub fault: Option<Fault>,
+    /// Motions on which they are not clear.
+    pub faults: u64,
+}
+
+#[derive(Clone, Debug)]
+struct Pair {
+    views: [View; 2],
+    known: Option<Known>,
+    guess: [usize; 2],
+    result: PairResult,
+}
+
+/// A distance at a pose.
+#[derive(Clone, Debug)]
+struct Known {
+    joints: Joints,
+    /// The middle of each body as the other sees it there.
+    centres: [Vector3<f64>; 2],
+    at_least: f64,
+}
+
+/// The proof for all pairs, motion by motion.
+#[derive(Clone, Debug)]
+pub struct Proof {
+    axes: Vec<Joint>,
+    rules: Rules,
+    bodies: Vec<Body>,
+    pairs: Vec<Pair>,
+    last: Option<Joints>,
+    distances: u64,
+}
+
+impl Proof {
+    /// `counts` tells of two bodies on different links whether they are looked at.
+    pub fn new(
+        axes: &[Joint],
+        bodies: Vec<Body>,
+        rules: Rules,
+        counts: impl Fn(&Body, &Body) -> bool,
+    ) -> Self {
+        let mut pairs = Vec::new();
+        for (first, one) in bodies.iter().enumerate() {
+            for (second, other) in bodies.iter().enumerate().skip(first + 1) {
+                if one.link != other.link && counts(one, other) {
+                    pairs.push(Pair::new(axes, [first, second], [one, other]));
+                }
+            }
+        }
+        Self { axes: axes.to_vec(), rules, bodies, pairs, last: None, distances: 0 }
+    }
+
+    /// The bodies.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// What is known of each pair.
+    pub fn results(&self) -> impl Iterator<Item = &PairResult> {
+        self.pairs.iter().map(|pair| &pair.result)
+    }
+
+    /// Distances that were computed.
+    pub fn distances(&self) -> u64 {
+        self.distances
+    }
+
+    /// Another tool is in the spindle: what was known of distances does not hold any more.
+    pub fn forget(&mut self) {
+        for pair in &mut self.pairs {
+            pair.known = None;
+        }
+    }
+
+    /// The distance of each pair where the axes stand on `joints`, what meshes enclose among it.
+    pub fn at(&mut self, joints: &Joints) -> Vec<([usize; 2], Apart)> {
+        let Self { bodies, pairs, distances, .. } = self;
+        let found = pairs.iter_mut().map(|pair| {
+            let apart = pair.distance(bodies, joints, true);
+            (pair.result.bodies, apart)
+        });
+        let found: Vec<_> = found.collect();
+        *distances += found.len() as u64;
+        found
+    }
+
+    /// Proves a motion, for all pairs that `looks` wants of it.
+    pub fn take(&mut self, motion: &Move<'_>, looks: impl Fn(&Body, &Body) -> bool) {
+        let [from, to] = motion.way.ends.map(|stance| stance.joints);
+        if self.last.is_some_and(|last| last != from) {
+            // Nothing is known of how it came here.
+            self.forget();
+        }
+        self.last = Some(to);
+        let whole = motion.way.whole();
+        let Self { bodies, pairs, rules, distances, .. } = self;
+        for pair in pairs {
+            let [one, other] = pair.result.bodies.map(|place| &bodies[place]);
+            if !looks(one, other) {
+                pair.known = None;
+                continue;
+            }
+            let touches = [one.kind, other.kind];
+            let keep = match (motion.rapid, touches) {
+                // A rapid begins and ends as near to what is cut as the CL file has it.
+                (_, [BodyKind::Cutter, BodyKind::Stock] | [BodyKind::Stock, BodyKind::Cutter]) => {
+                    0.0
+                }
+                (true, _) => rules.rapid,
+                (false, _) => rules.keep,
+            };
+            let trial = Trial { bodies, motion, keep: keep.max(ALLOWANCE), within: rules.within };
+            *distances += pair.take(&trial, whole.as_ref());
+        }
+    }
+
+    /// The axes of the chain.
+    pub fn axes(&self) -> &[Joint] {
+        &self.axes
+    }
+}
+
+/// A motion that a pair is held against.
+struct Trial<'a> {
+    bodies: &'a [Body],
+    motion: &'a Move<'a>,
+    keep: f64,
+    within: f64,
+}
+
+impl Pair {
+    fn new(axes: &[Joint], bodies: [usize; 2], [one, other]: [&Body; 2]) -> Self {
+        let view = |from: &Body, of: &Body| {
+            let (centre, radius) = of.shape.sphere();
+            View::new(axes, from.link, of.link, centre, radius)
+        };
+        let result = PairResult {
+            bodies,
+            clear_by: f64::INFINITY,
+            nearest: (f64::INFINITY, 0),
+            fault: None,
+            faults: 0,
+        };
+        Self { views: [view(one, other), view(other, one)], known: None, guess: [0; 2], result }
+    }
+
+    /// How far they are apart; `fresh`: what meshes enclose is looked at too.
+    fn distance(&mut self, bodies: &[Body], joints: &Joints, fresh: bool) -> Apart {
+        let [one, other] = self.result.bodies.map(|place| &bodies[place].shape);
+        let at = self.views[0].placement(joints);
+        if !at.shift.iter().chain(&at.rotation).all(|value| value.is_finite()) {
+            let (point, nearest) = (Vector3::zeros(), self.guess);
+            return Apart { at_least: 0.0, at_most: f64::INFINITY, point, nearest };
+        }
+        let mut apart = distance::of_shapes(one, other, &at, self.guess);
+        self.guess = apart.nearest;
+        if fresh && let Some(point) = distance::encloses(one, other, &at) {
+            (apart.at_least, apart.at_most, apart.point) = (0.0, 0.0, point);
+        }
+        apart
+    }
+
+    /// They come nearer to one another by no more than this on a piece, mm, from where they stand at `known`.
+    fn reach(&self, known: &Known, piece: &Piece) -> f64 {
+        let [one, other] = [0, 1]
+            .map(|view: usize| self.views[view].reach(&known.joints, known.centres[view], piece));
+        one.min(other)
+    }
+
+    /// Proves a motion; how many distances were computed.
+    fn take(&mut self, trial: &Trial<'_>, whole: Option<&Piece>) -> u64 {
+        let Some(whole) = whole else {
+            let joints = trial.motion.way.ends[0].joints;
+            self.refuse(trial, Verdict::Unproven, &joints, None);
+            return 0;
+        };
+        let mut computed = 0;
+        let mut waiting = vec![whole.clone()];
+        let mut clear_by = f64::INFINITY;
+        while let Some(piece) = waiting.pop() {
+            if let Some(left) = self.left(trial, &piece) {
+                clear_by = clear_by.min(left);
+                continue;
+            }
+            computed += 1;
+            let fresh = self.known.is_none();
+            let joints = piece.middle;
+            let apart = self.distance(trial.bodies, &joints, fresh);
+            if apart.at_most < self.result.nearest.0 {
+                self.result.nearest = (apart.at_most, trial.motion.line);
+            }
+            if apart.at_most < trial.keep {
+                let verdict = match apart.at_most <= 0.0 {
+                    // Whether the axes come by there hangs on how fast each of them is.
+                    _ if piece.independent => Verdict::Unproven,
+                    true => Verdict::Hits,
+                    false => Verdict::Near,
+                };
+                self.refuse(trial, verdict, &joints, Some(&apart));
+                return computed;
+            }
+            let centres = [0, 1].map(|view: usize| self.views[view].centre(&joints));
+            let known = Known { joints, centres, at_least: apart.at_least };
+            let reach = self.reach(&known, &piece);
+            self.known = Some(known);
+            if let Some(left) = self.left(trial, &piece) {
+                clear_by = clear_by.min(left);
+                continue;
+            }
+            let widest = self.views[0].widest(&piece).map_or(0, |(axis, _)| axis);
+            let halves = match reach <= trial.within || computed > MOST_PIECES {
+                true => None,
+                false => piece.halves(&trial.motion.way, widest),
+            };
+            if let Some([first, last]) = halves {
+                waiting.extend([last, first]);
+            } else if apart.at_least - reach >= trial.keep {
+                // What is to be kept is; the nearest approach is not known as closely as elsewhere.
+                clear_by = clear_by.min(apart.at_least - reach);
+            } else {
+                self.refuse(trial, Verdict::Unproven, &joints, Some(&apart));
+                return computed;
+            }
+        }
+        self.result.clear_by = self.result.clear_by.min(clear_by);
+        computed
+    }
+
+    /// What is left of the distance that is known, mm, if that is enough: what is to be kept, and no less than the nearest
+    /// approach by much.
+    fn left(&self, trial: &Trial<'_>, piece: &Piece) -> Option<f64> {
+        let known = self.known.as_ref()?;
+        let left = known.at_least - self.reach(known, piece);
+        let nearest = CLOSE * self.result.nearest.0 - trial.within;
+        (left >= trial.keep && left >= nearest).then_some(left)
+    }
+
+    fn refuse(
+        &mut self,
+        trial: &Trial<'_>,
+        verdict: Verdict,
+        joints: &Joints,
+        apart: Option<&Apart>,
+    ) {
+        self.known = None;
+        self.result.faults += 1;
+        let known = self.result.fault.as_ref().map(|fault| fault.verdict);
+        let worse = match known {
+            None => true,
+            Some(known) => verdict == Verdict::Hits && known != Verdict::Hits,
+        };
+        if worse {
+            self.result.fault = Some(Fault {
+                verdict,
+                line: trial.motion.line,
+                joints: *joints,
+                at_most: apart.map_or(f64::INFINITY, |apart| apart.at_most),
+                keep: trial.keep,
+                point: apart.map_or_else(Vector3::zeros, |apart| apart.point),
+            });
+        }
+    }
+}

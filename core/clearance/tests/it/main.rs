@@ -1,0 +1,6 @@
+//! Distances and proofs, held against closed forms and brute force.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod distance;
+mod oracle;
+mod proof;

@@ -1,0 +1,280 @@
+//! The proof along motions of random machines, held against samples of them.
+
+use nalgebra::Vector3;
+use post_clearance::convex::Convex;
+use post_clearance::piece::Way;
+use post_clearance::proof::{Body, BodyKind, Move, Proof, Rules};
+use post_clearance::shape::Shape;
+use post_machine::kinematics::{Joints, Solver};
+use post_motion::path::{Curve, Interpolation, Stance};
+use post_testkit::{Rng, at_least, randomised};
+use post_testmachines::Random;
+
+use crate::oracle::{any_piece, apart, moved, product};
+
+type V = Vector3<f64>;
+
+/// Triangles of a block.
+pub fn block_mesh(low: V, high: V) -> Vec<[V; 3]> {
+    let corner = |place: usize| {
+        let pick = |axis: usize| if place >> axis & 1 == 1 { high[axis] } else { low[axis] };
+        Vector3::new(pick(0), pick(1), pick(2))
+    };
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let halves = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    halves.map(|corners| corners.map(corner)).collect()
+}
+
+struct Bodies {
+    /// Convex pieces of each.
+    pieces: [Vec<Convex>; 2],
+    links: [usize; 2],
+    proof: Proof,
+}
+
+/// Two bodies on two links of a machine.
+fn bodies(rng: &mut Rng, machine: &Random, size: f64, rules: Rules) -> Bodies {
+    let joints = &machine.reference.joints;
+    let (first, second) = loop {
+        let links = (rng.pick(joints.len() + 1), rng.pick(joints.len() + 1));
+        if links.0 != links.1 {
+            break links;
+        }
+    };
+    let mut pieces = || {
+        let middle = rng.point(300.0);
+        let count = 1 + rng.pick(3);
+        let mut pieces = Vec::new();
+        for _ in 0..count {
+            let at = middle + rng.point(size);
+            pieces.push(any_piece(rng, at, size));
+        }
+        pieces
+    };
+    let pieces = [pieces(), pieces()];
+    let body = |link: usize, pieces: &Vec<Convex>| Body {
+        name: String::new(),
+        kind: BodyKind::Machine,
+        link,
+        shape: Shape::new(pieces.clone()).unwrap(),
+    };
+    let all = vec![body(first, &pieces[0]), body(second, &pieces[1])];
+    let proof = Proof::new(joints, all, rules, |_, _| true);
+    Bodies { pieces, links: [first, second], proof }
+}
+
+impl Bodies {
+    /// The distance at a pose, by other means: no less than it is.
+    fn apart(&self, machine: &Random, q: &Joints) -> f64 {
+        let place = |link: usize| product(&machine.reference.joints, q, 0, link);
+        let [one, other] = self.links.map(place);
+        let found = self.pieces[0].iter().flat_map(|first| {
+            let first = moved(first, &one);
+            self.pieces[1].iter().map(move |second| apart(&first, &moved(second, &other)))
+        });
+        found.fold(f64::INFINITY, f64::min)
+    }
+
+    fn take(
+        &mut self,
+        solver: &Solver,
+        way: &Interpolation,
+        ends: [&Stance; 2],
+        independent: bool,
+    ) {
+        let way = Way { solver, interpolation: way, ends, independent };
+        self.proof.take(&Move { way, rapid: independent, line: 1 }, |_, _| true);
+    }
+}
+
+fn stance(solver: &Solver, joints: Joints) -> Stance {
+    Stance { joints, pose: solver.chain().forward(&joints) }
+}
+
+fn solver(machine: &Random) -> Option<Solver> {
+    Solver::new(machine.reference.chain(), &machine.free, machine.held).ok()
+}
+
+/// What came of random motions.
+#[derive(Default, Debug)]
+struct Count {
+    clear: u32,
+    faults: u32,
+    close: u32,
+}
+
+/// Holds a motion against samples of it.
+fn judge(bodies: &Bodies, sampled: f64, rules: &Rules, count: &mut Count) {
+    let result = bodies.proof.results().next().unwrap().clone();
+    if result.faults > 0 {
+        count.faults += 1;
+        return;
+    }
+    count.clear += 1;
+    assert!(result.clear_by <= sampled + 1e-9, "proven {} sampled {sampled}", result.clear_by);
+    assert!(sampled >= rules.keep, "{sampled}");
+    if result.clear_by >= 0.93 * sampled - 2.0 * rules.within {
+        count.close += 1;
+    }
+}
+
+#[test]
+fn no_motion_of_axes_comes_nearer_than_is_proven() {
+    let (rounds, mut rng) = randomised(1500, 311);
+    let mut count = Count::default();
+    for _ in rounds {
+        let (free, held) = (rng.pick(3), rng.pick(2));
+        let machine = Random::new(&mut rng, free, held);
+        let Some(solver) = solver(&machine) else { continue };
+        let rules = Rules { keep: rng.order(-2.0, 1.3), rapid: 0.0, within: 0.01 };
+        let size = rng.range(20.0, 200.0);
+        let mut bodies = bodies(&mut rng, &machine, size, rules.clone());
+        let mut sampled = f64::INFINITY;
+        let mut from = machine.values(&mut rng);
+        // Motions in a row: what is known of the first holds on.
+        for _ in 0..3 {
+            let mut to = machine.values(&mut rng);
+            let share = rng.order(-3.0, 0.0);
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = from + (*to - from) * share;
+            }
+            let ends = [stance(&solver, from), stance(&solver, to)];
+            bodies.take(&solver, &Interpolation::Axes, [&ends[0], &ends[1]], false);
+            for look in 0..=24 {
+                let t = f64::from(look) / 24.0;
+                let q = std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * t);
+                sampled = sampled.min(bodies.apart(&machine, &q));
+            }
+            from = to;
+        }
+        judge(&bodies, sampled, &rules, &mut count);
+        // What is found at a pose is one.
+        let result = bodies.proof.results().next().unwrap();
+        if let Some(fault) = &result.fault {
+            assert!(fault.at_most < rules.keep + 3.0 * rules.within || sampled < rules.keep);
+        }
+    }
+    assert!(count.clear > at_least(300) && count.faults > at_least(100), "{count:?}");
+    assert!(count.close * 20 >= count.clear * 19, "{count:?}");
+}
+
+#[test]
+fn axes_that_arrive_when_they_like_stay_as_far_apart_as_is_proven() {
+    let (rounds, mut rng) = randomised(1200, 312);
+    let mut count = Count::default();
+    for _ in rounds {
+        let machine = Random::new(&mut rng, 2, 0);
+        let Some(solver) = solver(&machine) else { continue };
+        let rules = Rules { keep: 0.0, rapid: rng.order(-2.0, 1.3), within: 0.05 };
+        let size = rng.range(20.0, 150.0);
+        let mut bodies = bodies(&mut rng, &machine, size, rules.clone());
+        let from = machine.values(&mut rng);
+        let mut to = machine.values(&mut rng);
+        let share = rng.order(-3.0, 0.0);
+        for (to, from) in to.iter_mut().zip(from) {
+            *to = from + (*to - from) * share;
+        }
+        let ends = [stance(&solver, from), stance(&solver, to)];
+        bodies.take(&solver, &Interpolation::Axes, [&ends[0], &ends[1]], true);
+        let mut sampled = f64::INFINITY;
+        for _ in 0..60 {
+            let q = std::array::from_fn(|axis| {
+                from[axis] + (to[axis] - from[axis]) * rng.range(0.0, 1.0)
+            });
+            sampled = sampled.min(bodies.apart(&machine, &q));
+        }
+        let rules = Rules { keep: rules.rapid, ..rules };
+        judge(&bodies, sampled, &rules, &mut count);
+    }
+    assert!(count.clear > at_least(100) && count.faults > at_least(15), "{count:?}");
+}
+
+#[test]
+fn a_tip_that_the_control_keeps_is_proven_by_where_the_axes_go() {
+    let (rounds, mut rng) = randomised(800, 313);
+    let mut count = Count::default();
+    for _ in rounds {
+        let machine = Random::new(&mut rng, 2, 0);
+        let Some(solver) = solver(&machine) else { continue };
+        let rules = Rules { keep: rng.order(-2.0, 1.3), rapid: 0.0, within: 0.01 };
+        let size = rng.range(20.0, 200.0);
+        let mut bodies = bodies(&mut rng, &machine, size, rules.clone());
+        let from = machine.values(&mut rng);
+        let mut to = machine.values(&mut rng);
+        let share = rng.order(-3.0, -0.5);
+        for (to, from) in to.iter_mut().zip(from) {
+            *to = from + (*to - from) * share;
+        }
+        let mut ends = [stance(&solver, from), stance(&solver, to)];
+        let curve = match rng.pick(3) {
+            0 => {
+                // The end is where the arc leads.
+                let normal = rng.direction();
+                let centre = ends[0].pose.tip + rng.point(100.0);
+                let sweep = rng.range(-6.0, 6.0);
+                let arm = ends[0].pose.tip - centre;
+                let turn = nalgebra::UnitQuaternion::from_scaled_axis(normal * sweep);
+                let tip = centre + turn * arm + normal * rng.range(-20.0, 20.0);
+                let joints = machine.reference.put(tip, ends[1].joints);
+                ends[1] = stance(&solver, joints);
+                Curve::Arc { centre, normal, sweep }
+            }
+            _ => Curve::Straight,
+        };
+        let way = Interpolation::Tip(curve);
+        bodies.take(&solver, &way, [&ends[0], &ends[1]], false);
+        let mut sampled = f64::INFINITY;
+        let (mut near, mut lost) = (from, false);
+        for look in 0..=40 {
+            let t = f64::from(look) / 40.0;
+            let Ok(q) = way.joints_at(&solver, [&ends[0], &ends[1]], t, &near) else {
+                lost = true;
+                break;
+            };
+            near = q;
+            sampled = sampled.min(bodies.apart(&machine, &q));
+        }
+        if !lost {
+            judge(&bodies, sampled, &rules, &mut count);
+        }
+    }
+    assert!(count.clear > at_least(80) && count.faults > at_least(50), "{count:?}");
+}
+
+/// A body inside another whose surface it does not touch.
+#[test]
+fn what_a_mesh_encloses_hits() {
+    let (rounds, mut rng) = randomised(1200, 314);
+    let mut hits = 0;
+    for _ in rounds {
+        let machine = Random::new(&mut rng, 2, 0);
+        let Some(solver) = solver(&machine) else { continue };
+        let size = rng.range(50.0, 400.0);
+        let block = Vector3::repeat(size);
+        let links = [0, machine.reference.joints.len()];
+        let ball = Convex::ball(rng.point(500.0), rng.range(1.0, 30.0));
+        let body = |link, shape| Body { name: String::new(), kind: BodyKind::Machine, link, shape };
+        let mesh = Shape::mesh(&block_mesh(-block, block)).unwrap();
+        let solid = Shape::new(vec![Convex::block(-block, block)]).unwrap();
+        let q = machine.values(&mut rng);
+        let found = [mesh, solid].map(|shape| {
+            let ball = Shape::new(vec![ball.clone()]).unwrap();
+            let all = vec![body(links[0], shape), body(links[1], ball)];
+            let joints = &machine.reference.joints;
+            let mut proof = Proof::new(joints, all, Rules::default(), |_, _| true);
+            let at = stance(&solver, q);
+            let way = Way {
+                solver: &solver,
+                interpolation: &Interpolation::Axes,
+                ends: [&at, &at],
+                independent: false,
+            };
+            proof.take(&Move { way, rapid: false, line: 1 }, |_, _| true);
+            proof.results().next().unwrap().faults
+        });
+        assert_eq!(found[0], found[1]);
+        hits += found[0];
+    }
+    assert!(hits > 5, "{hits}");
+}

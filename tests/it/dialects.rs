@@ -37,7 +37,13 @@ pub fn samples() -> impl Iterator<Item = &'static str> {
 /// What the machine file of a control must name, since its maker's default is beyond doubt nowhere.
 pub fn named(dialect: &str) -> &'static [&'static str] {
     match dialect {
-        "brother" => &["--set", "control.brother.tcp_on=\"G43.4 H{h}\""],
+        "brother" => &[
+            "--set",
+            "control.brother.unit_system=\"mm\"",
+            "--set",
+            "control.brother.tcp_on=\"G43.4 H{h}\"",
+        ],
+        "mitsubishi" => &["--set", "control.mitsubishi.tapping=\"rigid\""],
         "grbl" => &["--set", "control.grbl.hal=true", "--set", "control.retract={Z=0}"],
         "hurco" => &["--set", "control.hurco.tcp_on=[\"G69\", \"M128\"]"],
         "isg" => &["--set", "control.isg.inch_feeds=true"],

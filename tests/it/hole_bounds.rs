@@ -90,11 +90,14 @@ fn share(dialect: &str, units: &str, (cl, bottoms): &(String, Vec<Vector3<f64>>)
     fs::write(folder.join("p.cls"), cl).unwrap();
     let units = format!("control.units=\"{units}\"");
     let job = ["-m", "vmc", "--dialect", dialect, "--tool-length", "100"];
-    // What okuma's number means is told for mm; here it counts in the units of the program.
+    // What a number of okuma's and brother's means is told for mm; here it counts in the units of the program.
     let named: Vec<&str> = (named(dialect).iter().copied())
         .map(|option| match option {
             "control.okuma.unit_system=\"1 mm\"" if units.contains("inch") => {
                 "control.okuma.unit_system=\"1 inch\""
+            }
+            "control.brother.unit_system=\"mm\"" if units.contains("inch") => {
+                "control.brother.unit_system=\"inch\""
             }
             option => option,
         })

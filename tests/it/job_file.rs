@@ -192,6 +192,7 @@ fn each_dialect_names_the_job_so_that_it_is_found() {
     for dialect in dialects {
         let option = match dialect {
             "okuma" => "set.control.okuma.unit_system = \"1 mm\"\nset.control.retract.Z = 0\n",
+            "brother" => "set.control.brother.unit_system = \"mm\"\n",
             _ => "",
         };
         let text = format!(

@@ -200,9 +200,11 @@ impl Job {
         }
         let report = program.report();
         let relied = report.relied.iter();
-        faults.extend(relied.map(|(line, group)| (Some(*line), format!("{} not set", group.name()))));
+        faults
+            .extend(relied.map(|(line, group)| (Some(*line), format!("{} not set", group.name()))));
         let unretracted = report.unretracted.iter();
-        faults.extend(unretracted.map(|(line, axes)| (Some(*line), format!("{axes} not retracted"))));
+        faults
+            .extend(unretracted.map(|(line, axes)| (Some(*line), format!("{axes} not retracted"))));
         let found = verifier.finish(&mut |_| {});
         assert_eq!(found, quick.finish(&mut |_| {}));
         faults.extend(found.faults.into_iter().map(|fault| {
@@ -475,8 +477,7 @@ fn mutate(kind: &str, random: &mut Rng, lines: &mut Vec<String>, length: &mut f6
         "stop out" => {
             let stops = |line: &String| {
                 let mut words = line.split(' ');
-                words.next_back().is_some_and(|word| STOPS.contains(&word))
-                    || line.contains("G4 ")
+                words.next_back().is_some_and(|word| STOPS.contains(&word)) || line.contains("G4 ")
             };
             let places: Vec<usize> = (0..lines.len()).filter(|at| stops(&lines[*at])).collect();
             lines.remove(*places.get(random.pick(places.len().max(1)))?);

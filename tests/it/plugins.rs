@@ -184,6 +184,8 @@ fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
         let named: &[&str] = match name.as_str() {
             "grbl" => &["--option", "hal=true"],
             "okuma" => &["--option", "unit_system=1 mm"],
+            "brother" => &["--option", "unit_system=mm"],
+            "mitsubishi" => &["--option", "tapping=rigid"],
             _ => &[],
         };
         let test = |plugin: &str| {

@@ -102,7 +102,8 @@ fn of_dialect<T>(dialect: &str, told: impl FnOnce(&mut OpenedDialect) -> T) -> T
             ("tcp_on", text("G169 HL={h}")),
             ("tcp_off", text("G170")),
         ],
-        "brother" => &[("tcp_on", text("G43.4 H{h}"))],
+        "brother" => &[("unit_system", text("mm")), ("tcp_on", text("G43.4 H{h}"))],
+        "mitsubishi" => &[("tapping", text("rigid"))],
         "hurco" => &[("tcp_on", text("M128")), ("tcp_off", text("M129"))],
         _ => &[],
     };

@@ -3,10 +3,10 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, CycleCode, Dwell, Iso, Leave, Offset, Plane, Rigid, Subprogram, Table, Tcp,
-    iso_options, options, words,
+    Control, CycleCode, Dwell, Iso, Leave, MotionCodes, Offset, Plane, Rigid, Subprogram, Table,
+    Tcp, iso_options, options, words,
 };
-use post_plugin::{Cycle, Meaning, OptionSpec, Setup, export_dialect};
+use post_plugin::{Cycle, Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect};
 
 struct Brother;
 
@@ -17,6 +17,8 @@ impl Control for Brother {
         options: OPTIONS,
         extension: "NC",
         percent: false,
+        // The CNC-C00 has no G20 and G21: the units are a setting of the control.
+        codes: MotionCodes { units: ["", ""], ..MotionCodes::ISO },
         offset: Offset::ADDITIONAL,
         relies: RELIES,
         feed_all_axes: true,
@@ -42,12 +44,33 @@ impl Control for Brother {
         ..Table::ISO
     };
 
-    fn open(_: &Setup<'_>) -> Result<Self, String> {
-        Ok(Brother)
+    fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        let wanted = match setup.units {
+            Units::Millimetre => "mm",
+            Units::Inch => "inch",
+        };
+        match setup.text("unit_system") {
+            named if named == wanted => Ok(Brother),
+            "" => Err(
+                "the units of a program are a setting of this control, which no word of the program chooses: say which one \
+                 it has by the option `unit_system`"
+                    .to_owned(),
+            ),
+            other => Err(format!(
+                "this program is in {wanted}, and the control is set to {other}: it would read the numbers otherwise; \
+                 [control] units chooses the program's, `unit_system` says the control's"
+            )),
+        }
     }
 }
 
 const OPTIONS: &[OptionSpec] = iso_options![
+    OptionSpec {
+        key: "unit_system",
+        kind: OptionKind::Choice(&["", "mm", "inch"]),
+        default: Value::Text(""),
+        help: "The units that the control is set to, which no word chooses: must be named, and be those of the program.",
+    },
     options::SPACES,
     options::inverse_time_decimals(3),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
@@ -83,17 +106,24 @@ const CYCLES: &[CycleCode] = &[
 
 const RELIES: &[&str] = &[
     "P of waits and cycles is in seconds",
-    "I of G77 is the pitch in mm, also in an inch program",
+    "the control is set to the units of the program: no word chooses them",
+    "I of G77 is the pitch in mm",
+    "user parameter 0039: G49 without Z, the tool retracted, raises no alarm",
     "frame, work offsets, H, D and subprograms are written as Fanuc has them: confirm at the machine",
 ];
 
 /// Words that it reads and that are not written here.
 const OWN: &[(&str, Meaning)] = &[
+    ("G20", Meaning::Inch),
+    ("G21", Meaning::Millimetre),
     // T behind it: the tool is changed while the axes go to what else the block says.
     ("G100", Meaning::ToolChange),
     ("G33", Meaning::Thread),
     ("G44", Meaning::LengthNegative),
     ("G43.4", Meaning::TcpOn),
+    ("G84", Meaning::CycleTap),
+    ("G77", Meaning::CycleTap),
+    ("G77 I", Meaning::CycleTap),
     ("G77 J", Meaning::CycleTap),
     ("G74", Meaning::CycleTapLeft),
     ("G74 I", Meaning::CycleTapLeft),

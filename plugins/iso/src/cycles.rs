@@ -18,6 +18,8 @@ const PITCH_DECIMALS: u8 = 4;
 pub(crate) struct CycleWords {
     codes: &'static [CycleCode],
     rigid: Option<Rigid>,
+    /// What a tap is told is settled: whether it is rigid, and what its pitch counts in.
+    taps: bool,
     /// Way off the wall, program units; 0: fine boring is not written.
     shift: f64,
     running: Option<ModalCycle>,
@@ -84,9 +86,14 @@ impl CycleWords {
             _ => 0.0,
         };
         let inch = setup.units == post_plugin::Units::Inch;
+        let tapping = text(setup, "tapping", "rigid");
+        let rigid = (tapping == "rigid").then_some(table.rigid);
+        // What a pitch in the place of F counts in in an inch program no source says.
+        let by_pitch = matches!(rigid, Some(Rigid::Codes { pitch, .. }) if !pitch.is_empty());
         CycleWords {
             codes: table.cycles,
-            rigid: (text(setup, "tapping", "rigid") == "rigid").then_some(table.rigid),
+            rigid,
+            taps: !tapping.is_empty() && !(inch && by_pitch),
             shift: if inch { shift / INCH } else { shift },
             running: None,
         }
@@ -94,9 +101,12 @@ impl CycleWords {
 
     /// Cycles of the control that the options leave.
     pub(crate) fn codes(&self) -> impl Iterator<Item = &'static CycleCode> {
-        let shift = self.shift;
+        let (shift, settled) = (self.shift, self.taps);
         let codes = self.codes.iter();
-        codes.filter(move |code| !shifts(code.kind) || shift > 0.0)
+        codes.filter(move |code| match code.kind {
+            kind if shifts(kind) => shift > 0.0,
+            kind => !taps(kind) || settled,
+        })
     }
 
     pub(crate) fn capabilities(&self) -> Capabilities {
@@ -351,12 +361,12 @@ impl Engine {
         }
     }
 
-    /// Writes the pitch of a thread, mm in a program of either unit.
+    /// Writes the pitch of a thread, mm.
     fn pitch_word(&mut self, address: &str, running: &ModalCycle) -> Result<(), String> {
         let Some(Spindle::On { rpm, .. }) = self.turning else {
             return Err("a rigid tap without a speed of the spindle".to_owned());
         };
-        let pitch = running.thread_pitch(rpm) * if self.inch { INCH } else { 1.0 };
+        let pitch = running.thread_pitch(rpm);
         self.motion.block.number(address, pitch, PITCH_DECIMALS, self.motion.style);
         Ok(())
     }

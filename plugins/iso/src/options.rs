@@ -124,6 +124,14 @@ pub const fn tapping(default: &'static str) -> OptionSpec {
         help: "The spindle turns with the feed axis, or the tap is held by a compensating chuck.",
     }
 }
+/// Tapping on a control where nothing may be taken for granted.
+pub const TAPPING_NAMED: OptionSpec = OptionSpec {
+    key: "tapping",
+    kind: OptionKind::Choice(&["", "rigid", "floating"]),
+    default: Value::Text(""),
+    help: "The spindle turns with the feed axis, or the tap is held by a compensating chuck: must be named where the program \
+           taps, since the control's parameters decide what a bare G84 does.",
+};
 /// The shift of fine boring.
 pub const BORE_SHIFT: OptionSpec = OptionSpec::number(
     "bore_shift",

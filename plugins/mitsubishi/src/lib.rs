@@ -25,8 +25,8 @@ impl Control for Mitsubishi {
         leave: &[Leave::Retract, Leave::Length, Leave::Again],
         vector: "G43.5",
         plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
-        // Else parameter #8159 decides, as delivered for a compensating chuck.
-        rigid: Rigid::Beside(",R1"),
+        // Else parameter #8159 decides, as delivered for a compensating chuck. Beside `,R1` F may be the pitch.
+        rigid: Rigid::Ahead("M29"),
         surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "G92 S" }),
         probe: "G31",
         subprogram: Subprogram::M98,
@@ -60,7 +60,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
     ),
     options::TOOL_VECTOR,
     options::cycles_in_plane(false),
-    options::tapping("rigid"),
+    options::TAPPING_NAMED,
     options::BORE_SHIFT,
     options::smoothing(""),
     options::smoothing_off(""),
@@ -70,6 +70,7 @@ const RELIES: &[&str] = &[
     "frame, work offsets, H, D, cycles and subprograms are written as Fanuc has them: confirm at the machine",
     "7915, 1247, 8901 to 8906, 1450: tool centre point control and inclined surface are set up",
     "under G43.4 coordinates stay with the table",
+    "taps: M29 S ahead of G84 makes them synchronous; without it 8159 decides, F is a feed a minute either way",
     "cycles, G41 and G42 stand neither under G43.4 nor on an inclined surface, unless an option says so",
 ];
 
@@ -86,6 +87,10 @@ const OWN: &[(&str, Meaning)] = &[
     ("G68.3", Meaning::TiltedPlane),
     ("G5", Meaning::Smoothing),
     ("G5.1", Meaning::Smoothing),
+    ("G84", Meaning::CycleTap),
+    ("G74", Meaning::CycleTapLeft),
+    ("M29", Meaning::Nothing),
+    (",R", Meaning::Nothing),
     ("G76", Meaning::CycleBoreFine),
     ("G87", Meaning::CycleBoreBack),
     ("G12", Meaning::CycleOther),

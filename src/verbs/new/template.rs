@@ -331,6 +331,13 @@ fn options(choices: &Choices) -> Vec<(&'static str, &'static str)> {
             };
             vec![(units, "a parameter of the control: compare, a point does not override it")]
         }
+        "brother" => {
+            let units = match choices.units {
+                OutputUnits::Mm => "unit_system = \"mm\"",
+                OutputUnits::Inch => "unit_system = \"inch\"",
+            };
+            vec![(units, "a setting of the control: compare, no word of a program chooses it")]
+        }
         "isg" if choices.units == OutputUnits::Inch => {
             vec![("inch_feeds = true", "compare at the machine: F counts inches under G70")]
         }

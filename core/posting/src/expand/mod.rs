@@ -426,6 +426,9 @@ fn no_moves(kind: Cycle) -> Diagnostic {
         Cycle::BoreFine | Cycle::BoreBack => {
             "[program] bore_shift, on the controls that have it, says which way the cycle draws the tool off the wall: it is not written without; or CYCLE/BORE without ORIENT"
         }
-        _ => "cycles = \"native\" and a control that has it, or thread milling in the CAM system",
+        Cycle::Tap | Cycle::TapLeft => {
+            "cycles = \"native\" and a control that has it; the dialect's option `tapping` where it must be named (`post plugin show`), and a program in mm where it taps by the pitch; or thread milling in the CAM system"
+        }
+        _ => "cycles = \"native\" and a control that has it",
     })
 }

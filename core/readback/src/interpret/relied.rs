@@ -86,8 +86,7 @@ impl ControlState {
     fn look_for_first_retract(&mut self) {
         let retract = self.machine.frame.retract.iter().map(|(place, _)| *place);
         let unsaid = retract.filter(|place| self.said & (1 << place) == 0);
-        let names: Vec<&str> =
-            unsaid.map(|place| self.machine.axes[place].name.as_str()).collect();
+        let names: Vec<&str> = unsaid.map(|place| self.machine.axes[place].name.as_str()).collect();
         if !names.is_empty() {
             self.report.unretracted = Some((self.line, names.join(", ")));
         }

@@ -80,6 +80,7 @@ pub fn needed(name: &str) -> Vec<(String, GivenValue)> {
         "grbl" => ("hal", GivenValue::Flag(true)),
         // Nothing is written in a unit that nobody has named.
         "okuma" => ("unit_system", GivenValue::Text("1 mm".to_owned())),
+        "brother" => ("unit_system", GivenValue::Text("mm".to_owned())),
         _ => return Vec::new(),
     };
     vec![(needed.0.to_owned(), needed.1)]

@@ -33,6 +33,7 @@ fn the_stock_plugins_are_good() {
         "grbl" => run(*plugin, &[("hal", GivenValue::Flag(true))]),
         // Nothing is written in a unit that nobody has named.
         "okuma" => run(*plugin, &[("unit_system", GivenValue::Text("1 mm".to_owned()))]),
+        "brother" => run(*plugin, &[("unit_system", GivenValue::Text("mm".to_owned()))]),
         _ => run(*plugin, &[]),
     });
     let with_options = [

@@ -2,7 +2,7 @@ use post_kit::{Bench, jobs};
 use post_plugin::Value;
 
 fn bench() -> Bench {
-    Bench::of(post_brother::plugin())
+    Bench::of(post_brother::plugin()).with("unit_system", Value::Text("mm"))
 }
 
 #[test]
@@ -31,6 +31,15 @@ fn five_axes_with_axis_positions() {
 fn five_axes_with_tcp() {
     let bench = bench().with("tcp_on", Value::Text("G43.4 H{h}"));
     insta::assert_snapshot!(bench.tcp().write_job().unwrap());
+}
+
+/// No word chooses the units: nobody posts without having said which the control is set to.
+#[test]
+fn the_units_are_those_of_the_control() {
+    let refused = Bench::of(post_brother::plugin()).write_job().unwrap_err();
+    assert!(refused.to_string().contains("unit_system"), "{refused}");
+    let program = bench().write_declared(&jobs::three_axes()).unwrap();
+    assert!(!program.contains("G21") && !program.contains("G20"), "{program}");
 }
 
 /// The pitch stands in the place of F, in mm; with a compensating chuck it is a plain tap with F.

@@ -2,7 +2,7 @@ use post_kit::{Bench, jobs};
 use post_plugin::Value;
 
 fn bench() -> Bench {
-    Bench::of(post_mitsubishi::plugin())
+    Bench::of(post_mitsubishi::plugin()).with("tapping", Value::Text("rigid"))
 }
 
 #[test]
@@ -37,13 +37,15 @@ fn five_axes_with_tcp() {
     insta::assert_snapshot!(bench().tcp().write_job().unwrap());
 }
 
-/// Without `,R1` a parameter decides, which is delivered for a compensating chuck.
+/// Without `M29` a parameter decides, which is delivered for a compensating chuck: nobody taps without having said which it is.
 #[test]
 fn taps_are_synchronous() {
     let rigid = bench().write_declared(&jobs::three_axes()).unwrap();
-    let taps: Vec<&str> = rigid.lines().filter(|line| line.contains("G84 ")).collect();
-    assert!(!taps.is_empty() && taps.iter().all(|tap| tap.ends_with(" ,R1")), "{rigid}");
+    let (_, tap) = rigid.split_once("M29 S").unwrap();
+    assert!(tap.lines().nth(1).unwrap().contains("G84 "), "{rigid}");
     let floating = bench().with("tapping", Value::Text("floating"));
     let floating = floating.write_declared(&jobs::three_axes()).unwrap();
-    assert!(floating.contains("G84 ") && !floating.contains(",R"), "{floating}");
+    assert!(floating.contains("G84 ") && !floating.contains("M29"), "{floating}");
+    let unsaid = Bench::of(post_mitsubishi::plugin()).write_declared(&jobs::three_axes()).unwrap();
+    assert!(!unsaid.contains("G84"), "{unsaid}");
 }

@@ -10,7 +10,7 @@ use post_plugin::{
 use super::Case;
 use super::commands::commands;
 use super::declared::declared;
-use super::options::options_of;
+use super::options::{options_of, switches_of};
 use super::pen::{BEGIN, Pen, rounded};
 use super::print::{edges, moves};
 use super::runs::runs;
@@ -156,7 +156,7 @@ fn otherwise(
     if pen.setup.tcp != plain.setup.tcp {
         let mut own = Case::named("");
         no_tool_pose(&pen, case)?;
-        options_of(&pen, &mut own)?;
+        switches_of(&pen, &mut own)?;
         // What an option changes without it was said there.
         case.wrong.append(&mut own.wrong);
     }

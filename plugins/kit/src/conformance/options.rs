@@ -10,8 +10,21 @@ use post_host::{GivenValue, PluginFault};
 
 /// Runs them.
 pub(super) fn options_of(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    values_of(pen, case, |_| true)
+}
+
+/// Flags and choices alone, for a second look: numbers and texts change the same everywhere.
+pub(super) fn switches_of(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
+    values_of(pen, case, |kind| matches!(kind, OptionKind::Flag | OptionKind::Choice(_)))
+}
+
+fn values_of(
+    pen: &Pen<'_>,
+    case: &mut Case,
+    wanted: fn(&OptionKind) -> bool,
+) -> Result<(), PluginFault> {
     let mut tried = 0;
-    for spec in pen.plugin.options() {
+    for spec in pen.plugin.options().iter().filter(|spec| wanted(&spec.kind)) {
         if spec.help.is_empty() {
             case.note(format!("`{}` says nothing about itself", spec.key));
         }

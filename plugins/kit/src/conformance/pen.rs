@@ -55,6 +55,11 @@ impl Pen<'_> {
         Ok(self.setup.tcp && self.open()?.capabilities().has(Capabilities::TOOL_VECTOR))
     }
 
+    /// The event as the host tells it to a dialect that writes `vectors`, or does not.
+    pub fn told<'e>(&self, event: Event<'e>, vectors: bool) -> Event<'e> {
+        if vectors { posed(event, self.setup.units) } else { event }
+    }
+
     pub fn leaves_out(&self, event: &Event<'_>) -> bool {
         self.left_out.contains(&event.name())
     }
@@ -64,7 +69,8 @@ impl Pen<'_> {
         &self,
         parts: &[&[Event<'_>]],
     ) -> Result<Result<WrittenParts, String>, PluginFault> {
-        self.write_each(parts, &|event| posed(event, self.setup.units))
+        let vectors = self.writes_vectors()?;
+        self.write_each(parts, &|event| self.told(event, vectors))
     }
 
     /// As [`Pen::write`], where nobody knows how the tool stands.
@@ -116,13 +122,14 @@ impl Pen<'_> {
         events: &[Event<'_>],
         most: usize,
     ) -> Result<Result<String, WriteFault>, PluginFault> {
+        let vectors = self.writes_vectors()?;
         let mut session = self.open()?;
         let (mut text, mut ends) = (String::new(), Vec::new());
         let mut done = 0;
         for chunk in events.chunks(most.min(events.len()).max(1)) {
             let mut batch = Batch::default();
             for (event, line) in chunk.iter().zip(1..) {
-                batch.push(line, posed(*event, self.setup.units));
+                batch.push(line, self.told(*event, vectors));
             }
             if let Err(fault) = session.write_batch(&batch, &mut text, &mut ends) {
                 return Ok(Err(WriteFault { index: done + fault.index, ..fault }));

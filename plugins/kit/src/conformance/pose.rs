@@ -1,4 +1,5 @@
-//! Where the tool stands at the end of a move, as the host tells it beside the words.
+//! Where the tool stands at the end of a move, as the host tells it beside the words: told to dialects that write its
+//! direction, so that of all others the words alone are tried.
 
 use post_plugin::{Event, ToolPose, Units};
 

@@ -4,12 +4,11 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use post_plugin::{Batch, DialectSession as _, Event, Feed, Format, Units, WriteFault};
+use post_plugin::{Batch, DialectSession as _, Event, Feed, Format, WriteFault};
 
 use super::Case;
 use super::dialect::UNKNOWN;
 use super::pen::{BEGIN, ELSEWHERE, Pen, rounded};
-use super::pose::posed;
 use crate::at;
 use post_host::{OpenedDialect, PluginFault};
 
@@ -19,10 +18,11 @@ const BATCH: usize = 128;
 /// What is written before a refusal is good, and is what it would be without.
 pub(super) fn after_a_refusal(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     let write = |last: Option<Event<'static>>| {
+        let vectors = pen.writes_vectors()?;
         let mut session = pen.open()?;
         let mut batch = Batch::default();
         for event in beginning().chain(last) {
-            batch.push(1, posed(event, pen.setup.units));
+            batch.push(1, pen.told(event, vectors));
         }
         let (mut out, mut ends) = (String::new(), Vec::new());
         let written = session.write_batch(&batch, &mut out, &mut ends);
@@ -129,9 +129,10 @@ fn beginning() -> impl Iterator<Item = Event<'static>> {
 }
 
 /// A session that cuts on and on.
-struct CuttingSession {
+struct CuttingSession<'p> {
     session: OpenedDialect,
-    units: Units,
+    pen: &'p Pen<'p>,
+    vectors: bool,
     format: Format,
     begun: bool,
     start: f64,
@@ -141,13 +142,14 @@ struct CuttingSession {
     fault: Option<WriteFault>,
 }
 
-impl CuttingSession {
-    fn open(pen: &Pen<'_>, start: f64) -> Result<Self, PluginFault> {
+impl<'p> CuttingSession<'p> {
+    fn open(pen: &'p Pen<'p>, start: f64) -> Result<Self, PluginFault> {
         let session = pen.open()?;
         let format = session.format().clone();
         Ok(CuttingSession {
             session,
-            units: pen.setup.units,
+            pen,
+            vectors: pen.writes_vectors()?,
             format,
             begun: false,
             start,
@@ -166,7 +168,7 @@ impl CuttingSession {
         let mut batch = Batch::default();
         if !self.begun {
             for event in beginning() {
-                batch.push(1, posed(event, self.units));
+                batch.push(1, self.pen.told(event, self.vectors));
             }
             self.begun = true;
         }
@@ -177,7 +179,7 @@ impl CuttingSession {
             let words = rounded(words, &self.format);
             let feed = if self.step % 37.0 < 20.0 { 900.0 } else { 400.0 };
             let cut = Event::linear(&words, Feed::PerMinute(feed));
-            batch.push(1, posed(cut, self.units));
+            batch.push(1, self.pen.told(cut, self.vectors));
         }
         self.ends.clear();
         let written = self.session.write_batch(&batch, &mut self.out, &mut self.ends);

@@ -14,8 +14,9 @@ P.panes.LEAST = 150;
 P.panes.build = () => {
   const views = P.by("views");
   for (const { name, view, high, grows, text } of P.panes.grips) {
-    const place = P.by(view);
-    if (place.hidden) continue;
+    // A CL file alone stands where the program would.
+    const place = [P.by(view), view === "nc" && P.by("cl")].find((one) => one && !one.hidden);
+    if (!place) continue;
     // Of three views that share a place, whichever is shown.
     const size = () => {
       const shown = high ? [...views.querySelectorAll("#charts, #spread, #table")].find((one) => !one.classList.contains("away")) || place : place;

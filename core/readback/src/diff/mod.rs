@@ -7,11 +7,13 @@
 //! | `walk` | goes along both paths of an operation at once, never back |
 //! | `meet` | where paths that part come together again |
 //! | `tally` | what was found on the way, by operation |
+//! | `events` | waits, stops and tool changes without a counterpart |
 //!
 //! Both are read twice: once for their operations, once along their paths. The paths are compared in the part frame, so
 //! that remarks, numbers of blocks, modal words that are repeated, where blocks end, whether the control or the words keep
 //! the tip, and, between two machines, the axes make no difference. Memory grows with the number of operations alone.
 
+mod events;
 mod meet;
 mod outline;
 mod steps;
@@ -21,11 +23,12 @@ mod walk;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::{BlockRunner, ProgramRun};
+pub use events::EventDifference;
 use outline::Outline;
 use steps::PathSteps;
 pub use tally::{
-    Difference, EventDifference, LoneWay, OperationDifference, PathPair, ProgramSums,
-    StateDifference, WorstDifference, WorstFeedDifference,
+    Difference, LoneWay, OperationDifference, PathPair, ProgramSums, StateDifference,
+    WorstDifference, WorstFeedDifference,
 };
 
 /// What makes a difference.

@@ -316,6 +316,30 @@ fn a_program_calls_those_of_the_operations() {
     assert!(main.contains(" M30\n") && !read("a_1.nc").contains("M30"), "{main}");
 }
 
+/// Lines that the CL file has letter for letter are lines of the user's own too.
+#[test]
+fn lines_of_the_cl_file_are_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let cl = CL.replacen("END-OF-PATH", "INSERT G65 P9811 Z-5.2\nPPRINT/G65 P9833\nEND-OF-PATH", 1);
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let machine = |print| {
+        format!("extends = \"vmc\"\n[control]\ninsert = \"literal\"\nprint = \"{print}\"\n")
+    };
+    good(post(folder.path(), &machine("literal"), &["part.cls", "-o", "a.nc", "--verify"], ""));
+    let program = fs::read_to_string(folder.path().join("a.nc")).unwrap();
+    assert!(program.contains("\nG65 P9811 Z-5.2\nG65 P9833\n"), "{program}");
+    let other = program.replace("P9833", "P9834");
+    fs::write(folder.path().join("a.nc"), other).unwrap();
+    let verb = ["verify", "-q", "-m", "mine.toml", "--tool-length", "100"];
+    let files = ["--against", "part.cls", "a.nc"];
+    let read = run(command().current_dir(folder.path()).args(verb).args(files), b"");
+    assert!(read.code == 1 && read.err.contains("`O9834` is called"), "{}", read.err);
+    assert!(read.err.contains("`G65 P9811 Z-5.2` is a line of the user's own"), "{}", read.err);
+    good(post(folder.path(), &machine("comment"), &["part.cls", "-o", "a.nc"], ""));
+    let program = fs::read_to_string(folder.path().join("a.nc")).unwrap();
+    assert!(program.contains("\n(G65 P9833)\n"), "{program}");
+}
+
 /// The raw part is told to the control by its dialect, or by lines of the machine file.
 #[test]
 fn the_stock_stands_in_the_program() {

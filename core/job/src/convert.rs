@@ -219,6 +219,7 @@ impl<'a> Conversion<'a> {
             course: ProgramCourse::new(self.run()?, finer),
             name: name.clone(),
             tools: read.tools().to_vec(),
+            own_lines: Vec::new(),
             cut_path: Some(cut_path),
         };
         let reading = ReadingSetup {

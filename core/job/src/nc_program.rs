@@ -47,6 +47,8 @@ pub struct NcControl {
     pub lexicon: Lexicon,
     /// What stands in its tables.
     pub offsets: Offsets,
+    /// Lines of the CL file that go into programs letter for letter.
+    pub own_lines: Vec<String>,
     limits: Limits,
 }
 
@@ -66,7 +68,15 @@ impl NcControl {
             counted.gauge -= machine.tool_axis * length;
         }
         let lexicon = Lexicon::new(spoken.language, spoken.writes, &spoken.words);
-        Self { machine: machine.clone(), counted, spoken, lexicon, offsets, limits }
+        Self {
+            machine: machine.clone(),
+            counted,
+            spoken,
+            lexicon,
+            offsets,
+            own_lines: Vec::new(),
+            limits,
+        }
     }
 
     /// As the flags say.
@@ -106,8 +116,10 @@ impl NcControl {
         name: &str,
         input: impl Read + Seek + Send + 'i,
     ) -> Result<RunningProgram<'i>, Box<Diagnostic>> {
-        let Self { counted, lexicon, offsets, limits, .. } = self;
-        Interpreter::new(counted, lexicon, offsets, *limits, name, Box::new(input))
+        let Self { counted, lexicon, offsets, own_lines, limits, .. } = self;
+        let input: ProgramText<'i> = Box::new(input);
+        let program = Interpreter::new(counted, lexicon, offsets, *limits, name, input)?;
+        Ok(program.declaring(own_lines.iter().map(String::as_str)))
     }
 
     /// The program in `file` from its beginning, its rapids at feed told from cuts.

@@ -178,12 +178,14 @@ pub fn verify(
     let along = machine.control_point.along;
     let (bounds, mut findings) = CutBounds::of(&mut course, along);
     let tools = course.tools().to_vec();
+    let own_lines = course.own_lines().map(str::to_owned).collect();
     let again = ClCourse::new(settings.clone(), source.open_beside()?.bytes);
     let course = ClCourse::new(settings, source.open()?.bytes);
     let against = VerifyReference {
         course: CourseWindow::new(course, reading.lines.clone()),
         name: cl_name,
         tools,
+        own_lines,
         cut_path: Some(CutPath::when_asked(bounds, Box::new(again), along)),
     };
     let held = hold(reading, against, name, input, watch)?;
@@ -235,6 +237,8 @@ pub struct VerifyReference<C> {
     pub name: String,
     /// Its tools.
     pub tools: Vec<ClTool>,
+    /// Its texts that are lines of the program.
+    pub own_lines: Vec<String>,
     /// Where all of it cuts, for how near rapids come; none: nothing is said of that.
     pub cut_path: Option<CutPath>,
 }
@@ -280,7 +284,7 @@ pub fn hold<C: Course>(
     watch: &mut dyn VerifyWatch,
 ) -> Result<VerifiedProgram, Failure> {
     let machine = reading.machine;
-    let VerifyReference { course, name: cl_name, tools, cut_path } = against;
+    let VerifyReference { course, name: cl_name, tools, own_lines, cut_path } = against;
     let spoken = nc_program::spoken(reading.finder, machine)?;
     let offsets = match &reading.offsets {
         Some(offsets) => Offsets {
@@ -290,7 +294,8 @@ pub fn hold<C: Course>(
         },
         None => offsets(reading.arguments, machine, &tools),
     };
-    let control = NcControl::of(machine, spoken, offsets, reading.limits);
+    let mut control = NcControl::of(machine, spoken, offsets, reading.limits);
+    control.own_lines = own_lines;
     let rules = VerifyRules { rows: watch.wants_lines(), ..rules(reading, &control, &tools) };
     let own = rules.own;
     let mut verifier = Verifier::new(&control.counted, rules, course);

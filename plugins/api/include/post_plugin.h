@@ -675,7 +675,8 @@ typedef struct {
 #define POST_AT_PROBE_WORDS 8u
 /* Lines of the user's own in the place of those that the event behind this one would write, under INSTEAD. What
  * that event puts in force is in force all the same. In front of a Event::Retract they stand for the way alone:
- * what the control must cancel is cancelled around them. */
+ * what the control must cancel is cancelled around them; in front of Event::End for the words that end the
+ * program: what closes its file (%) stands behind them. */
 #define POST_EVENT_INSTEAD 42u
 /* texts[0], text: One or more lines, each ended by a line feed but the last. */
 /* Cuts one behind the other, under CUTS: what a Linear of each would be, and the same text. Where the tool

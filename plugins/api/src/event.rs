@@ -473,7 +473,8 @@ events! { <'a>
     };
     /// Lines of the user's own in the place of those that the event behind this one would write, under `INSTEAD`. What
     /// that event puts in force is in force all the same. In front of a [`Event::Retract`] they stand for the way
-    /// alone: what the control must cancel is cancelled around them.
+    /// alone: what the control must cancel is cancelled around them; in front of [`Event::End`] for the words that end the
+    /// program: what closes its file (`%`) stands behind them.
     42 INSTEAD "lines in the place of an event's" Instead {
         /// One or more lines, each ended by a line feed but the last.
         text: &'a str,

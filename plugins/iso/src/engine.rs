@@ -52,8 +52,6 @@ pub struct Engine {
     cancel_due: bool,
     /// Words in the place of a retract in machine coordinates; empty: none.
     retract: String,
-    /// Words that end the program.
-    pub(crate) end: String,
     tcp_on: String,
     /// Empty: nothing is written about it.
     tcp_off: String,
@@ -559,7 +557,7 @@ impl Engine {
         if !self.coolant.is(false) {
             self.end_coolant(out);
         }
-        self.motion.line(&self.end, out);
+        self.motion.line(&self.settings.end, out);
         if self.percent {
             self.bare("%", out);
         }

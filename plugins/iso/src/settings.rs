@@ -23,6 +23,8 @@ pub(crate) struct SettingWords {
     axes: Vec<String>,
     /// Constant cutting speed in force.
     surface: Option<Surface>,
+    /// Words that end the program.
+    pub(crate) end: String,
 }
 
 /// What clamps an axis, and lets it go.
@@ -60,6 +62,7 @@ impl SettingWords {
             clamps: clamps.map(|line| clamp(line, setup)).collect::<Result<_, _>>()?,
             axes: setup.words.iter().map(|word| word.name.to_owned()).collect(),
             surface: None,
+            end: table.end.to_owned(),
         })
     }
 
@@ -333,7 +336,7 @@ impl Engine {
     /// Lines of the user's own that end the program.
     pub(crate) fn end_by(&mut self, lines: String) -> Result<(), String> {
         lines.lines().try_for_each(|line| crate::lines::fits(self.table, line))?;
-        self.end = lines;
+        self.settings.end = lines;
         Ok(())
     }
 }

@@ -89,7 +89,9 @@ impl PostArguments {
     /// What the programs depend on, as a text that is another if they may be.
     pub fn what_is_made(&self) -> String {
         let making = &self.making.0;
-        format!("{:?} {making:?} {:?}", self.job.settings(), self.outputs.0.split)
+        let outputs = &self.outputs.0;
+        let caller = if outputs.caller { " caller" } else { "" };
+        format!("{:?} {making:?} {:?}{caller}", self.job.settings(), outputs.split)
     }
 
     /// Text of the job file that is asked for.

@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::echoes;
-use super::file::{ControlFile, MachineFile, Rapid, StockFile, Tcp};
+use super::file::{ControlFile, MachineFile, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{MachineSources, Merged, Source, overlay};
 use super::limits::{
@@ -481,18 +481,6 @@ impl Builder<'_> {
             program,
             smoothing,
         }
-    }
-
-    /// The corners of the raw part, least first, mm.
-    fn stock(&mut self, stock: &Spanned<StockFile>) -> Option<[[f64; 3]; 2]> {
-        let corners = [&stock.get_ref().min, &stock.get_ref().max];
-        let corners: [[f64; 3]; 2] = corners.map(|corner| self.vector(corner).into());
-        let flat = (0..3).any(|axis| corners[0][axis] >= corners[1][axis]);
-        if flat {
-            let message = "the stock has no room between its corners".to_owned();
-            self.fault("machine-stock", stock.span(), message, "max is above min in X, Y and Z");
-        }
-        (!flat).then_some(corners)
     }
 
     /// What is wrong with the tables that say nothing of axes.

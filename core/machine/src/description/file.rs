@@ -13,6 +13,7 @@ use super::profile::ProfileFile;
 use super::program_file::ProgramFile;
 use super::quantity::KeyedNumber;
 use super::servo_file::ServoFile;
+use super::stock::StockFile;
 use super::table::{
     Count, DeValue, EntryError, Key, KeyType, Schemas, Slip, Spanned, Value, defined, keys, words,
 };
@@ -121,16 +122,6 @@ keys! {
         /// The raw part, a box along the axes of its frame: for texts of the program, and for dialects that tell the control
         /// of it. Where it is not said these take where the tool goes.
         stock: Option<Spanned<StockFile>>,
-    }
-}
-
-keys! {
-    /// The raw part: a box.
-    StockFile {
-        /// Least X, Y and Z, mm, part frame.
-        min: [KeyedNumber; 3],
-        /// Largest X, Y and Z, mm, part frame.
-        max: [KeyedNumber; 3],
     }
 }
 
@@ -439,6 +430,8 @@ words! {
         Comment "comment",
         /// A message on the control's screen, where the dialect has any; else a comment.
         Message "message",
+        /// A line of the program, letter for letter.
+        Literal "literal",
     }
 }
 

@@ -30,6 +30,7 @@ mod setting;
 pub(crate) mod smoothing;
 mod solids;
 mod spindle;
+mod stock;
 pub(crate) mod table;
 mod tools;
 

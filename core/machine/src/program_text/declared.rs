@@ -69,6 +69,11 @@ impl DeclaredLines {
         }
     }
 
+    /// Adds a line as it is: one of the CL file that goes into the program letter for letter.
+    pub fn add(&mut self, line: &str) {
+        self.line(vec![Some(line)]);
+    }
+
     /// A word of a line of them, in which no fact stands.
     pub fn has_word(&self, word: &str) -> bool {
         self.words.contains(word)

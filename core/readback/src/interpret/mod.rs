@@ -173,6 +173,12 @@ impl<R: Read + Seek> Interpreter<R> {
         })
     }
 
+    /// Passes lines with these texts too where they are not run, as those of the machine file: the CL file has them.
+    pub fn declaring<'l>(mut self, lines: impl IntoIterator<Item = &'l str>) -> Self {
+        lines.into_iter().for_each(|line| self.runner.control.declared.add(line));
+        self
+    }
+
     /// Runs so many plain blocks together at most; what they do does not hang on it.
     pub fn with_longest_run(mut self, most: usize) -> Self {
         self.run.longest = most;
@@ -213,7 +219,7 @@ impl<R: Read + Seek> Interpreter<R> {
             return Ok(true);
         }
         let message = format!(
-            "`{}` is a line of the machine file's own: what it does is not known, and the program is taken to go on from where it stood",
+            "`{}` is a line of the user's own: what it does is not known, and the program is taken to go on from where it stood",
             place.text.trim()
         );
         control.note(Diagnostic::warning("nc-own-line", message).at(Some(place.clone())));

@@ -83,7 +83,6 @@ impl Engine {
             register: (register != 0).then_some(register),
             offset_active: Modal::default(),
             own_offset: false,
-            end: table.end.to_owned(),
             length_active: Modal::default(),
             tcp_active: Modal::default(),
             follows_vector: false,

@@ -20,7 +20,7 @@ use post_grammar::text::{as_remark, excerpt};
 use post_grammar::{
     ArcMove, CircleRecord, CoolantWord, Delay, Record, Statement, Units, WordUsage,
 };
-use post_machine::description::{Print, Smoothing};
+use post_machine::description::Smoothing;
 use post_plugin::{Coolant, SpindleSense};
 
 pub use reading::{DefaultSpindle, ReadingOptions};
@@ -315,10 +315,8 @@ impl ClInterpreter {
                 self.begin_operation(record, name, tool.as_deref(), emit);
             }
             Statement::EndOfPath => self.end_operation(record, emit),
-            Statement::Print(text) if self.reading.print == Print::Message => {
-                emit(ProgramStep::Command(Command::Message(as_remark(text.clone()))));
-            }
-            Statement::PartName(text) | Statement::Print(text) => {
+            Statement::Print(text) => self.print(record, text, emit),
+            Statement::PartName(text) => {
                 emit(ProgramStep::Command(Command::Comment(as_remark(text.clone()))));
             }
             Statement::Insert(text) => self.insert(record, text, emit),

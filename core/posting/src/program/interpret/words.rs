@@ -2,7 +2,7 @@
 
 use post_grammar::text::{as_remark, escaped, excerpt, is_unprintable};
 use post_grammar::{Argument, Record, UnknownPath, WordUsage};
-use post_machine::description::Insert;
+use post_machine::description::{Insert, Print};
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 
 use super::{ClInterpreter, SHOWN_NAME, StepSink, record_place};
@@ -132,26 +132,49 @@ impl ClInterpreter {
         true
     }
 
-    /// A line of the user's own.
-    pub(super) fn insert(&mut self, record: &Record<'_>, text: &str, emit: &mut StepSink<'_>) {
+    /// A line of the program, letter for letter, from a `word` that `key` of the machine file says it of.
+    pub(super) fn literal(
+        &mut self,
+        record: &Record<'_>,
+        word: &str,
+        key: &str,
+        text: &str,
+        emit: &mut StepSink<'_>,
+    ) {
         // Tabs are blanks, here as in all of a CL file.
         let text = text.replace('\t', " ");
-        let shown = escaped(&excerpt(&text, SHOWN_NAME), &[]).into_owned();
-        if self.reading.insert == Insert::Literal {
-            match text.chars().find(|letter| is_unprintable(*letter)) {
-                None => emit(ProgramStep::Command(Command::Literal(text))),
-                Some(odd) => self.fault(
-                    record,
-                    "insert",
-                    format!(
-                        "INSERT {shown} would be a line of the program, and U+{:04X} in it ends a line or hides text",
-                        u32::from(odd)
-                    ),
-                    "take the character out, or let INSERT be a remark: --set control.insert=comment",
+        match text.chars().find(|letter| is_unprintable(*letter)) {
+            None => emit(ProgramStep::Command(Command::Literal(text))),
+            Some(odd) => self.fault(
+                record,
+                "insert",
+                format!(
+                    "{word} {} would be a line of the program, and U+{:04X} in it ends a line or hides text",
+                    escaped(&excerpt(&text, SHOWN_NAME), &[]),
+                    u32::from(odd)
                 ),
-            }
-            return;
+                &format!("take the character out, or let {word} be a remark: --set {key}=comment"),
+            ),
         }
+    }
+
+    /// A text for the operator, or a line of the program.
+    pub(super) fn print(&mut self, record: &Record<'_>, text: &str, emit: &mut StepSink<'_>) {
+        let command = match self.reading.print {
+            Print::Literal => return self.literal(record, "PPRINT", "control.print", text, emit),
+            Print::Message => Command::Message(as_remark(text.to_owned())),
+            Print::Comment => Command::Comment(as_remark(text.to_owned())),
+        };
+        emit(ProgramStep::Command(command));
+    }
+
+    /// A line of the user's own.
+    pub(super) fn insert(&mut self, record: &Record<'_>, text: &str, emit: &mut StepSink<'_>) {
+        if self.reading.insert == Insert::Literal {
+            return self.literal(record, "INSERT", "control.insert", text, emit);
+        }
+        let text = text.replace('\t', " ");
+        let shown = escaped(&excerpt(&text, SHOWN_NAME), &[]).into_owned();
         match InsertContent::of(&text) {
             InsertContent::Remark => {}
             InsertContent::Code if self.reading.allows("INSERT") => {

@@ -70,6 +70,11 @@ impl<R: Read> ClCourse<R> {
         self.modal.tools()
     }
 
+    /// Texts of the file so far that are lines of the program letter for letter (`INSERT`, `PPRINT`), each once.
+    pub fn own_lines(&self) -> impl Iterator<Item = &str> {
+        self.modal.own_lines.iter().map(String::as_str)
+    }
+
     /// Bytes of the file that were read so far, for a progress bar.
     pub fn bytes_read(&self) -> u64 {
         self.reader.bytes_read()

@@ -1,6 +1,6 @@
 //! Records become items: what is modal is settled.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -8,7 +8,7 @@ use post_grammar::{
     Argument, CoolantWord, Cutcom, CutterSide, Delay, Delta, FeedRate, FeedUnit, Record, Rotate,
     Statement, Units,
 };
-use post_machine::description::Print;
+use post_machine::description::{Insert, Print};
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::Pose;
 
@@ -28,6 +28,9 @@ pub(super) const FARTHEST: f64 = 1e7;
 
 /// Lengths of what has a direction.
 pub(super) const DIRECTIONS: Range<f64> = 1e-6..1e9;
+
+/// Lines of the user's own that are known by their text: a file may come from a stranger.
+const OWN_LINES: usize = 10_000;
 
 /// What a record means, or what is wrong with it.
 pub(super) type RecordResult = Result<(), Box<Diagnostic>>;
@@ -57,6 +60,8 @@ impl MotionFeed {
 #[derive(Debug)]
 pub(super) struct ClModal {
     pub(super) settings: ClSettings,
+    /// Texts of the file that are lines of the program, each once.
+    pub(super) own_lines: BTreeSet<String>,
     /// Units that the file names.
     pub(super) units: Option<Units>,
     /// mm in one unit of the file.
@@ -102,6 +107,7 @@ pub(super) struct ClModal {
 impl ClModal {
     pub(super) fn new(settings: ClSettings) -> Self {
         Self {
+            own_lines: BTreeSet::new(),
             scale: settings.units.map_or(1.0, millimetres),
             frames: Frames::new(settings.turn),
             settings,
@@ -218,8 +224,13 @@ impl ClModal {
             Statement::Other { word, arguments, .. } => self.other(record, word, arguments),
             // Points stay where they are written: the tool's centre, or the contour.
             Statement::CutcomOnCentre(_) => Ok(()),
-            // Lines of the user's own: they move nothing that is known here.
-            Statement::Insert(_) | Statement::Csys(_) => Ok(()),
+            Statement::Insert(text) => {
+                if self.settings.insert == Insert::Literal {
+                    self.own_line(text);
+                }
+                Ok(())
+            }
+            Statement::Csys(_) => Ok(()),
             // What it means for functions and operator: a match without `_` has all statements.
             _ => self.function(record, out),
         }
@@ -262,6 +273,7 @@ impl ClModal {
             Statement::Print(text) if self.settings.print == Print::Message => {
                 self.tell(record, ProgramEvent::Message(text.clone()), out);
             }
+            Statement::Print(text) if self.settings.print == Print::Literal => self.own_line(text),
             Statement::PartName(text) | Statement::Print(text) => {
                 self.tell(record, ProgramEvent::Remark(text.clone()), out);
             }
@@ -418,6 +430,13 @@ impl ClModal {
     pub(super) fn has_lines(&self, word: &str, arguments: &[Argument]) -> bool {
         let rules = &self.settings.rules;
         rules.iter().any(|rule| rule.fits(word, arguments).is_some())
+    }
+
+    /// A line of the user's own goes into the program letter for letter: it moves nothing that is known here.
+    fn own_line(&mut self, text: &str) {
+        if self.own_lines.len() < OWN_LINES {
+            self.own_lines.insert(text.to_owned());
+        }
     }
 
     /// Nobody knows where the tool stands from here on.

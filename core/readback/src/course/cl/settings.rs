@@ -1,7 +1,7 @@
 //! How a CL file is meant: what the machine file says of it, and what the user does.
 
 use post_grammar::{MajorWord, Units};
-use post_machine::description::{EdgeSource, Machine, Print, ToolLength, WordRule};
+use post_machine::description::{EdgeSource, Insert, Machine, Print, ToolLength, WordRule};
 
 /// How a CL file is meant. What `post` was told must be told here, so that the same job is judged.
 #[derive(Clone, Debug, Default)]
@@ -30,8 +30,10 @@ pub struct ClSettings {
     pub tool_length: ToolLength,
     /// Words that the machine file has lines of the program for: they do what these lines do, and move nothing here.
     pub rules: Vec<WordRule>,
-    /// What `PPRINT` is: a message or a remark.
+    /// What `PPRINT` is: a message, a remark or a line of the program.
     pub print: Print,
+    /// What `INSERT` is: a remark or a line of the program.
+    pub insert: Insert,
     /// Cutting speeds are kept by the control (the spindle turns the part): `spindle.surface_speed`.
     pub surface_speed: bool,
     /// Where the leading edge of a knife points; none for a tool that turns.
@@ -49,6 +51,7 @@ impl ClSettings {
             tool_length: machine.control.tool_length,
             rules: machine.word_rules.clone(),
             print: machine.control.print,
+            insert: machine.control.insert,
             surface_speed: machine.spindle.surface_speed,
             edge: machine.edge.map(|_| machine.solution.edge),
             head_offsets: (machine.heads.iter())

@@ -340,6 +340,23 @@ fn lines_of_the_cl_file_are_read_back() {
     assert!(program.contains("\n(G65 P9833)\n"), "{program}");
 }
 
+/// A block of several lines of a conversational control has one number, and is read back as one.
+#[test]
+fn a_probing_cycle_of_several_lines_is_one_block() {
+    let folder = tempfile::tempdir().unwrap();
+    let cl = CL.replacen("END-OF-PATH", "TOUCH/-1,2.5,-5.2\nEND-OF-PATH", 1);
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let machine = r#"extends = "dmu50"
+[cl.words]
+TOUCH = ["TCH PROBE 427 MEASURE COORDINATE ~", "Q263={n*unit:.3} ;1ST POINT ~", "Q264={n2*unit:.3} ;2ND POINT ~", "Q261={n3*unit:.3} ;HEIGHT"]
+"#;
+    let done = post(folder.path(), machine, &["part.cls", "-o", "a.h", "--verify"], "");
+    assert_eq!(done.code, 0, "{}", done.err);
+    let program = fs::read_to_string(folder.path().join("a.h")).unwrap();
+    let block = " TCH PROBE 427 MEASURE COORDINATE ~\nQ263=-1.000 ;1ST POINT ~\nQ264=2.500 ;2ND POINT ~\nQ261=-5.200 ;HEIGHT\n";
+    assert!(program.contains(block), "{program}");
+}
+
 /// The raw part is told to the control by its dialect, or by lines of the machine file.
 #[test]
 fn the_stock_stands_in_the_program() {

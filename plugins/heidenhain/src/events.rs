@@ -35,6 +35,7 @@ impl Heidenhain {
     }
 
     pub(crate) fn put(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        self.goes_on &= matches!(event, Event::Literal { .. } | Event::Word { .. });
         self.resume(event, out);
         if self.waits_for_tool(event, out)? {
             return Ok(());

@@ -106,15 +106,14 @@ impl Heidenhain {
 
     /// Lines of the user's own, a block each; one after a tilde goes on with its block and has no number.
     pub(crate) fn own(&mut self, lines: &str, out: &mut String) {
-        let mut goes_on = false;
         for line in lines.lines().filter(|line| !line.is_empty()) {
-            if goes_on {
+            if self.goes_on {
                 out.push_str(line);
                 out.push('\n');
             } else {
                 self.block.line(line, out);
             }
-            goes_on = line.trim_end().ends_with('~');
+            self.goes_on = line.trim_end().ends_with('~');
         }
     }
 

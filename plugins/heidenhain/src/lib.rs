@@ -83,6 +83,8 @@ struct Heidenhain {
     instead: Option<String>,
     /// Lines that end the program.
     ending: String,
+    /// The block of the user's own that was written last goes on in the next line.
+    goes_on: bool,
     /// A tool call that waits for its speed.
     tool: Option<ToolCall>,
     /// A tool has been called here, or the program calls none: the control knows the axis of the tool.
@@ -193,6 +195,7 @@ impl Dialect for Heidenhain {
             rpm: None,
             instead: None,
             ending: "M30".to_owned(),
+            goes_on: false,
             coolant_ends: [
                 (Coolant::Mist, own("coolant_mist_off")),
                 (Coolant::Through, own("coolant_through_off")),

@@ -6,7 +6,6 @@ use toml::Spanned;
 
 use super::Machine;
 use super::build::Builder;
-use super::cl_words::WordRule;
 use super::program_file::{ProgramFile, TextLines};
 use super::smoothing::SmoothingRules;
 use crate::diagnostic::{Diagnostic, SourcePlace};
@@ -253,7 +252,7 @@ impl Machine {
                 _ => declared.template(&text.template),
             }
         }
-        self.word_rules.iter().flat_map(WordRule::texts).for_each(|line| declared.line(line));
+        self.word_rules.iter().for_each(|rule| declared.rule(rule.texts()));
         declared
     }
 }

@@ -13,7 +13,7 @@ const MOST_CHOICES: usize = 6;
 /// The lines that the templates and rules of a machine file can write, as patterns. Blanks and block numbers do not count.
 #[derive(Clone, Debug, Default)]
 pub struct DeclaredLines {
-    /// The texts of each line, in capitals without blanks; none stands for a fact or a number.
+    /// The texts of each line, [`plain`]; none stands for a fact or a number.
     lines: BTreeSet<Vec<Option<String>>>,
     words: BTreeSet<String>,
     /// The lines among them that end a program.
@@ -32,7 +32,9 @@ struct LinePiece<'t> {
 impl DeclaredLines {
     /// Adds the lines of a template, with and without what stands beside a condition.
     pub(crate) fn template(&mut self, template: &TextTemplate) {
-        for line in template.source().lines() {
+        // A line that ends in `~` is one block with those after it.
+        let joined = template.source().replace("~\n", "");
+        for line in joined.lines() {
             let pieces = pieces(line);
             let optional: Vec<usize> =
                 (0..pieces.len()).filter(|piece| pieces[*piece].optional).collect();
@@ -59,8 +61,22 @@ impl DeclaredLines {
         self.words.extend(ends.words);
     }
 
+    /// Adds lines by their texts in their order; none stands for any number. One that ends in `~` is one block with the
+    /// next.
+    pub(crate) fn rule<'t>(&mut self, lines: impl Iterator<Item = Vec<Option<&'t str>>>) {
+        let mut block = Vec::new();
+        for line in lines {
+            let goes_on = line.last().copied().flatten().is_some_and(|text| text.ends_with('~'));
+            block.extend(line);
+            if !goes_on {
+                self.line(std::mem::take(&mut block));
+            }
+        }
+        self.line(block);
+    }
+
     /// Adds a line by its texts in their order; none stands for any number.
-    pub(crate) fn line(&mut self, texts: Vec<Option<&str>>) {
+    fn line(&mut self, texts: Vec<Option<&str>>) {
         let words = texts.iter().flatten().flat_map(|text| text.split_whitespace());
         self.words.extend(words.map(str::to_ascii_uppercase));
         let letters = texts.iter().flatten().flat_map(|text| text.bytes());
@@ -140,9 +156,10 @@ fn pieces<'t>(line: &'t str) -> Vec<LinePiece<'t>> {
     pieces
 }
 
-/// In capitals, without blanks.
+/// In capitals, without blanks and signs that a block goes on.
 fn plain(text: &str) -> String {
-    text.chars().filter(|letter| !letter.is_whitespace()).flat_map(char::to_uppercase).collect()
+    let letters = text.chars().filter(|letter| !letter.is_whitespace() && *letter != '~');
+    letters.flat_map(char::to_uppercase).collect()
 }
 
 /// Whether the texts make the line, one behind the other.

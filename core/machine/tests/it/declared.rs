@@ -7,7 +7,7 @@ use crate::source;
 const FILE: &str = r#"
 extends = "vmc"
 [cl.words]
-TOUCH = ["G65 P9811 Z{n:.3} Q{n2}", "CYCLE977({n})"]
+TOUCH = ["G65 P9811 Z{n:.3} Q{n2}", "CYCLE977({n})", "TCH PROBE 427 MEASURE ~", "Q263={n:.3} ;POINT"]
 [program]
 footer = ["M{{ tool.number }}", "({{ program.name }})", "{% if tool.number == 2 %}M51{% else %}M52{% endif %}"]
 between_tools = ["MSG({{ tool.number }}{% if coolant is not none %} WET{% endif %})", "{% if coolant is none %}", "M77 M78", "{% endif %}"]
@@ -29,6 +29,7 @@ fn lines_of_the_machine_file_are_known_whatever_facts_stand_in_them() {
         "M99",
         "M51",
         "M52",
+        "32 TCH PROBE 427 MEASURE   Q263=-1.000 ;POINT",
     ] {
         assert!(declared.has_line(line), "{line}");
     }

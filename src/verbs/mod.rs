@@ -3,6 +3,7 @@
 
 mod batch;
 mod check;
+mod clearance;
 mod complete;
 mod convert;
 mod diff;
@@ -34,6 +35,7 @@ use post_machine::diagnostic::nearest;
 use crate::job_lines::{self, PlainWords, ProgramWords};
 use batch::BatchArguments;
 use check::CheckArguments;
+use clearance::ClearanceArguments;
 use complete::CompletionsArguments;
 use convert::ConvertArguments;
 use diff::DiffArguments;
@@ -83,6 +85,7 @@ use view::{View, ViewArguments};
   post batch *.cls --machine dmu50 --machine ac-trunnion -o results.parquet
   post read part.nc --machine ac-trunnion --csv motions.csv
   post verify part.nc --machine dmu50 --against part.cls --map map.json
+  post clearance part.nc --machine dmu50-with-vise.toml --cl part.cls
   post diff old.nc new.nc --machine ac-trunnion
   post predict part.nc --machine ac-trunnion --pictures prediction
   post tools tool.tbl --against part.cls
@@ -140,6 +143,7 @@ enum Verb<const LATE: bool> {
     Schema(Late<SchemaArguments, LATE>),
     Batch(Late<Box<BatchArguments>, LATE>),
     Check(Late<CheckArguments, LATE>),
+    Clearance(Late<Box<ClearanceArguments>, LATE>),
     Convert(Late<Box<ConvertArguments>, LATE>),
     Diff(Late<Box<DiffArguments>, LATE>),
     New(Late<NewArguments, LATE>),
@@ -202,6 +206,7 @@ impl CommandLine {
             Some(Verb::Schema(Late(arguments))) => print_schema::run(session, &arguments),
             Some(Verb::Batch(Late(arguments))) => batch::run(session, &arguments),
             Some(Verb::Check(Late(arguments))) => check::run(session, &arguments),
+            Some(Verb::Clearance(Late(arguments))) => clearance::run(session, &arguments),
             Some(Verb::Convert(Late(arguments))) => convert::run(session, &arguments),
             Some(Verb::Diff(Late(arguments))) => diff::run(session, &arguments),
             Some(Verb::New(Late(arguments))) => new::run(session, &arguments),

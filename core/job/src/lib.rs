@@ -5,6 +5,7 @@ pub mod batch;
 mod beside;
 mod blocks_ahead;
 pub mod caller;
+pub mod clearance;
 mod columns;
 pub mod commission_program;
 pub mod compensate;

@@ -7,7 +7,7 @@ use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use post_machine::description::{
-    self, MOST_BYTES, Machine, MachineReading, Setting, Source, StatedNumber,
+    self, GivenShape, MOST_BYTES, Machine, MachineReading, Setting, Source, StatedNumber,
 };
 use post_machine::diagnostic::{Diagnostic, nearest};
 
@@ -33,6 +33,12 @@ pub fn load(
     let heads = machine.heads.iter().map(|head| &head.machine);
     for solid in std::iter::once(&machine).chain(heads).flat_map(|machine| &machine.solids) {
         session.read_files().note("the solid", &solid.file);
+    }
+    let given = machine.stock.iter().chain(&machine.fixtures);
+    for body in given {
+        if let GivenShape::File(file) = &body.shape {
+            session.read_files().note("the body", file);
+        }
     }
     Ok(machine)
 }

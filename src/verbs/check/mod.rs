@@ -13,6 +13,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_cli::arguments::flag_values;
 use post_cli::arguments::flag_values::file;
 use post_cli::terminal::print;
+use post_job::clearance;
 use post_job::commission_program::{self, Commissioned};
 use post_job::failure::Failure;
 use post_job::files::{self, PathArg, Role};
@@ -134,7 +135,8 @@ fn commission(
 fn alone(session: &Session, arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
     let mut check = job::derive(machine, arguments.tool_length)?;
     let mut findings = check.findings();
-    let solids = report::solids::faults(machine);
+    let mut solids = report::solids::faults(machine);
+    solids.extend(clearance::of_machine(machine));
     let messages = solids.iter().map(|fault| fault.message.clone());
     check.warnings.extend(messages);
     findings.extend(solids);

@@ -13,7 +13,8 @@ use super::file::{ControlFile, MachineFile, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{MachineSources, Merged, Source, overlay};
 use super::limits::{
-    MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_OFFSETS, MOST_PARAMETERS, MOST_TURNS,
+    MOST_BODIES, MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_OFFSETS, MOST_PARAMETERS,
+    MOST_TURNS,
 };
 use super::numbers::EvaluatedAt;
 use super::options::take_options;
@@ -333,6 +334,10 @@ impl Builder<'_> {
         let options = self.control_options(file, &axes, &mut control_options);
         let own = self.axis_free_rules(file, &mut model_options);
         let solids = self.solids(&file.solids, &axes);
+        let fixtures = self.fixtures(&file.fixture, &axes);
+        let stock = self.stock(file.stock.as_ref());
+        let outlines = self.tool_outlines(&file.tools);
+        let clearance = self.clearance(&file.clearance);
         let motion = self.motion(&file.motion);
         let plan = self.plan(&file.plan, &motion, own.accuracy.tolerance);
         let unused = |section: &'static str, tables: BTreeMap<String, Vec<GivenOption>>| {
@@ -373,6 +378,10 @@ impl Builder<'_> {
             heads: Vec::new(),
             unused_options,
             solids,
+            fixtures,
+            stock,
+            outlines,
+            clearance,
         };
         self.frame(file.control.get_ref(), &mut machine);
         self.check_edge(file, &machine);
@@ -512,6 +521,10 @@ impl Builder<'_> {
         self.check_size("[parameters]", parameters, MOST_PARAMETERS);
         let tools = file.tools.lengths.values().map(KeyedValue::span);
         self.check_size("[tools]", tools, MOST_ENTRIES);
+        let tools = file.tools.outlines.iter().map(|(_, outline)| outline.span());
+        self.check_size("[tools]", tools, MOST_ENTRIES);
+        let fixtures = file.fixture.keys().map(Spanned::span);
+        self.check_size("[fixture]", fixtures, MOST_BODIES);
         let words = file.cl.words.keys().map(Spanned::span);
         self.check_size("[cl.words]", words, MOST_ENTRIES);
         let groups = file.solution.exclusive.iter();

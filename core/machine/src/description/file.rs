@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use serde_json::json;
 
+use super::bodies::{BodyFile, ClearanceFile};
 use super::bounds::Bounds;
 use super::motion::MotionFile;
 use super::plan::PlanFile;
@@ -76,15 +77,22 @@ keys! {
         workpiece: WorkpieceFile,
         /// The gauge point and the tool's directions.
         tool: ToolFile,
-        /// Lengths of tools by number, mm from the gauge point to the tip (`1 = 120.5`), and the file of tools.
+        /// Lengths of tools by number, mm from the gauge point to the tip (`1 = 120.5`), or tables of length and outline by
+        /// number (`[tools.1]`), and the file of tools.
         tools: ToolsFile,
         /// The axes of the chain by their letters.
         axis: Spanned<BTreeMap<String, Spanned<AxisFile>>> = AXES,
-        /// STL files of the machine's bodies, for pictures alone; mm, machine frame, every axis at zero. An axis letter
+        /// STL files of the machine's bodies, for pictures and for `post clearance`; mm, machine frame, every axis at zero. An axis letter
         /// is what that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is
         /// clamped with the part, `t` a holder or head besides. A path is that from this file; an empty one takes away
         /// what an extended machine names.
         solids: BTreeMap<Spanned<String>, Spanned<String>> = BODIES,
+        /// What holds the part, or is in the way besides, by names of your own: for `post clearance`.
+        fixture: BTreeMap<Spanned<String>, Spanned<BodyFile>>,
+        /// What is cut, as it is before it is cut: for `post clearance`.
+        stock: Option<Spanned<BodyFile>>,
+        /// Distances that bodies keep from one another: for `post clearance`.
+        clearance: ClearanceFile,
         /// How far the axes are from their set-points, by their letters; those of an axis without are followed exactly.
         servo: BTreeMap<String, Spanned<ServoFile>> = AXES,
         /// The control and its language.

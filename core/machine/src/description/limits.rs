@@ -18,6 +18,9 @@ pub(super) const MOST_HEADS: usize = 32;
 /// Entries of `[tools]`, of `[cl.words]`, and positions of an indexed axis: they are gone through one by one.
 pub(super) const MOST_ENTRIES: usize = 2_000;
 
+/// Fixtures: each is held against all else that moves.
+pub(super) const MOST_BODIES: usize = 100;
+
 /// Options of one plugin.
 pub(super) const MOST_OPTIONS: usize = 200;
 

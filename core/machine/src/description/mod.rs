@@ -3,6 +3,7 @@
 mod accuracy;
 mod arcs;
 mod axes;
+mod bodies;
 mod bounds;
 mod build;
 mod choice;
@@ -60,6 +61,7 @@ pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
+pub use bodies::{ClearanceRules, GivenBody, GivenShape, RapidAxes, ToolOutline};
 pub use solids::Solid;
 pub use spindle::SpindleSpeeds;
 pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
@@ -143,8 +145,16 @@ pub struct Machine {
     pub heads: Vec<Head>,
     /// Options for plugins that it does not use.
     pub unused_options: Vec<UnusedOptions>,
-    /// Shapes of its bodies, for pictures.
+    /// Shapes of its bodies, for pictures and for what hits what.
     pub solids: Vec<Solid>,
+    /// What holds the part, and what is in the way besides.
+    pub fixtures: Vec<GivenBody>,
+    /// What is cut.
+    pub stock: Option<GivenBody>,
+    /// How far tools reach from their axes.
+    pub outlines: Vec<ToolOutline>,
+    /// Distances that bodies keep.
+    pub clearance: ClearanceRules,
 }
 
 /// A table of options for a plugin that the machine does not use: a machine may carry those of several dialects.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use super::bodies::{ToolOutline, ToolOutlineFile};
 use super::build::Builder;
 use super::file::OutputUnits;
 use super::quantity::KeyedNumber;
@@ -165,31 +166,39 @@ pub(crate) struct ToolsFile {
     pub keys: ToolFileKeys,
     /// Lengths by what stands for a number.
     pub lengths: BTreeMap<String, KeyedNumber>,
+    /// Outlines, likewise.
+    pub outlines: Vec<(String, Spanned<ToolOutlineFile>)>,
 }
 
 impl KeyType for ToolsFile {
     fn read(value: &Spanned<DeValue<'_>>, key: &'static Key) -> Result<Self, EntryError> {
         let mut named = DeTable::new();
         let mut lengths = BTreeMap::new();
+        let mut outlines = Vec::new();
         for (name, value) in entries(value, "a map")? {
             let text = name.get_ref().as_ref();
             if ToolFileKeys::KEYS.iter().any(|key| key.name == text) {
                 named.insert(name.clone(), value.clone());
+            } else if matches!(value.get_ref(), DeValue::Table(_)) {
+                let mut outline = ToolOutlineFile::read(value, key)?;
+                lengths.extend(outline.length.take().map(|length| (text.to_owned(), length)));
+                outlines.push((text.to_owned(), Spanned::new(name.span(), outline)));
             } else {
                 lengths.insert(text.to_owned(), KeyedNumber::read(value, key)?);
             }
         }
-        Ok(Self { keys: ToolFileKeys::of(&named, value.span())?, lengths })
+        Ok(Self { keys: ToolFileKeys::of(&named, value.span())?, lengths, outlines })
     }
 
     fn absent() -> Option<Self> {
-        Some(Self { keys: ToolFileKeys::absent()?, lengths: BTreeMap::new() })
+        Some(Self { keys: ToolFileKeys::absent()?, lengths: BTreeMap::new(), outlines: Vec::new() })
     }
 
     fn schema(named: &mut Schemas) -> Value {
         ToolFileKeys::schema(named);
         let mut schema = named.remove("ToolFileKeys").unwrap_or_default();
-        schema["patternProperties"] = json!({ "^[0-9]+$": KeyedNumber::schema(named) });
+        let tool = [KeyedNumber::schema(named), ToolOutlineFile::schema(named)];
+        schema["patternProperties"] = json!({ "^[0-9]+$": { "anyOf": tool } });
         named.insert("ToolsFile".to_owned(), schema);
         json!({ "$ref": "#/definitions/ToolsFile" })
     }
@@ -220,6 +229,25 @@ impl Builder<'_> {
             }
         }
         tools
+    }
+
+    /// How far tools reach from their axes, by number.
+    pub(super) fn tool_outlines(&mut self, file: &ToolsFile) -> Vec<ToolOutline> {
+        let mut outlines = Vec::new();
+        for (number, outline) in &file.outlines {
+            let ToolOutlineFile { holder, cutter, .. } = outline.get_ref();
+            let holder = self.profile(&format!("the holder of tool {number}"), holder);
+            let cutter = self.profile(&format!("the cutter of tool {number}"), cutter);
+            match number.parse() {
+                Ok(number) => outlines.push(ToolOutline { number, holder, cutter }),
+                Err(_) => {
+                    let message = format!("[tools] has {number}, which is no tool number");
+                    let help = "[tools.1] describes tool 1";
+                    self.fault("machine-tools", outline.span(), message, help);
+                }
+            }
+        }
+        outlines
     }
 
     /// The file of tools, if one is named.

@@ -29,6 +29,18 @@ pub struct DrawnSolid {
     pub edges: Vec<[Vertex; 2]>,
 }
 
+/// Hands every triangle of an STL file, binary or text, to `take`, from the file's beginning; a coordinate is at most a
+/// kilometre.
+///
+/// # Errors
+/// What is read is no STL file, or cannot be read.
+pub fn triangles(
+    file: &mut (impl BufRead + Seek),
+    take: &mut dyn FnMut([Vertex; 3]),
+) -> Result<(), StlFault> {
+    stl::read(file, take)
+}
+
 impl DrawnSolid {
     /// Reads an STL file, binary or text. More triangles than `most` become fewer: corners that are close together
     /// become one of them, and triangles that have shrunk to a line go. Memory grows with what is kept and not with the

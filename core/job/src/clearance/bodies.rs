@@ -1,0 +1,194 @@
+//! Bodies of a machine and of its tools, as its file and those that it names have them.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use nalgebra::{Rotation3, Vector3};
+use post_clearance::convex::Convex;
+use post_clearance::distance::Placement;
+use post_clearance::proof::{Body, BodyKind};
+use post_clearance::shape::{MeshFaults, Shape};
+use post_machine::description::{GivenBody, GivenShape, Machine, ToolOutline};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
+use post_report::solid;
+
+/// Triangles that are read of one file.
+const MOST_TRIANGLES: usize = 2_000_000;
+
+/// What is known of a tool's shape.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ToolShape<'a> {
+    /// Its number.
+    pub number: u32,
+    /// From the gauge point to the tip, mm.
+    pub length: f64,
+    /// What the machine file has of it.
+    pub outline: Option<&'a ToolOutline>,
+    /// Its radius as a file of tools or the CL file has it, mm.
+    pub radius: Option<f64>,
+}
+
+/// The bodies of a machine without a tool: what is held and what holds it first. What is wrong with them is said; a body
+/// that cannot be had is an error.
+pub(super) fn of_machine(machine: &Machine, findings: &mut Vec<Diagnostic>) -> Vec<Body> {
+    let mut bodies = Vec::new();
+    let given = machine.stock.iter().map(|body| (BodyKind::Stock, body));
+    let given = given.chain(machine.fixtures.iter().map(|body| (BodyKind::Fixture, body)));
+    for (kind, given) in given {
+        if let Some(shape) = given_shape(machine, kind, given, findings) {
+            bodies.push(Body { name: given.name.clone(), kind, link: given.link, shape });
+        }
+    }
+    for solid in &machine.solids {
+        let kind =
+            if solid.whole || solid.body > 0 { BodyKind::Machine } else { BodyKind::Fixture };
+        let name = match (solid.whole, solid.body) {
+            (false, 0) => "w".to_owned(),
+            (false, _) => "t".to_owned(),
+            (true, link) => link_name(machine, link),
+        };
+        let at = (&solid.place, name.as_str());
+        if let Some(shape) = mesh(&solid.file, at, &|corner| corner, findings) {
+            bodies.push(Body { name, kind, link: solid.body, shape });
+        }
+    }
+    bodies
+}
+
+/// What the machine file calls a link: `b` the bed, else the axis that moves it.
+pub(super) fn link_name(machine: &Machine, link: usize) -> String {
+    let bed = machine.axes.iter().filter(|axis| axis.carries_part).count();
+    match link {
+        link if link == bed => "b".to_owned(),
+        link if link < bed => machine.axes[link].name.clone(),
+        link => machine.axes[link - 1].name.clone(),
+    }
+}
+
+/// The bodies of a tool: what it has no shape for is named.
+pub(super) fn of_tool(
+    machine: &Machine,
+    tool: &ToolShape<'_>,
+    lacks: &mut Vec<String>,
+) -> Vec<Body> {
+    let ToolShape { number, length, outline, radius } = *tool;
+    let link = machine.axes.len();
+    let tip = machine.gauge - machine.tool_axis * length;
+    let empty = Vec::new();
+    let holder = outline.map_or(&empty, |outline| &outline.holder);
+    let cutter = outline.map(|outline| outline.cutter.clone()).filter(|points| !points.is_empty());
+    // Nothing says where it ends: up to the gauge point it is as thick as where it cuts.
+    let cutter = cutter.or_else(|| radius.map(|radius| vec![[0.0, radius], [length, radius]]));
+    let holder = Shape::turned(holder, machine.gauge, -machine.tool_axis);
+    let cutter = cutter.and_then(|points| Shape::turned(&points, tip, machine.tool_axis));
+    let mut bodies = Vec::new();
+    for (kind, what, shape) in
+        [(BodyKind::Holder, "holder", holder), (BodyKind::Cutter, "cutter", cutter)]
+    {
+        let name = format!("{what} T{number}");
+        match shape {
+            Some(shape) => bodies.push(Body { name, kind, link, shape }),
+            None => lacks.push(name),
+        }
+    }
+    bodies
+}
+
+/// The shape of a fixture or of the stock, machine frame.
+fn given_shape(
+    machine: &Machine,
+    kind: BodyKind,
+    given: &GivenBody,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Shape> {
+    // The stock is where the CL file has it: turned about the part's Z, and where the part sits.
+    let placed = match kind {
+        BodyKind::Stock => Placement {
+            rotation: Rotation3::from_axis_angle(&Vector3::z_axis(), machine.turn).into_inner(),
+            shift: machine.mount,
+        },
+        _ => Placement::identity(),
+    };
+    let pieces = match &given.shape {
+        GivenShape::Block([low, high]) => vec![Convex::block(*low, *high)],
+        GivenShape::Cylinder { ends, radius } => {
+            let axis = (ends[1] - ends[0]).try_normalize(1e-9).unwrap_or_else(Vector3::z);
+            vec![Convex::frustum(*ends, axis, [*radius; 2])]
+        }
+        GivenShape::File(file) => {
+            return mesh(
+                file,
+                (&given.place, &given.name),
+                &|corner| placed.point(corner),
+                findings,
+            );
+        }
+    };
+    let shape = Shape::new(pieces.iter().map(|piece| piece.placed(&placed)).collect());
+    if shape.is_none() {
+        findings.push(unusable(&given.name, "it is too far away", &given.place));
+    }
+    shape
+}
+
+fn unusable(name: &str, why: &str, place: &Option<SourcePlace>) -> Diagnostic {
+    Diagnostic::error("clearance-body", format!("the body {name} cannot be used: {why}"))
+        .at(place.clone())
+        .help("nothing is proven of a body that is not there: coordinates are mm, files are STL")
+}
+
+/// The shape in an STL file, its corners placed by `map`.
+fn mesh(
+    path: &Path,
+    (place, name): (&Option<SourcePlace>, &str),
+    map: &dyn Fn(Vector3<f64>) -> Vector3<f64>,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Shape> {
+    let shown = path.display();
+    let mut refuse = |why: String| {
+        findings.push(unusable(name, &format!("{shown}: {why}"), place));
+    };
+    if !path.is_file() {
+        refuse("there is no such regular file".to_owned());
+        return None;
+    }
+    let mut triangles = Vec::new();
+    let mut count = 0;
+    let read = File::open(path).map_err(|error| error.to_string()).and_then(|file| {
+        let take = &mut |corners: [[f64; 3]; 3]| {
+            count += 1;
+            if count <= MOST_TRIANGLES {
+                triangles.push(corners.map(|corner| map(Vector3::from(corner))));
+            }
+        };
+        solid::triangles(&mut BufReader::new(file), take).map_err(|why| why.to_string())
+    });
+    let read = read.and_then(|()| match count > MOST_TRIANGLES {
+        true => Err(format!("{count} triangles; at most {MOST_TRIANGLES} are possible")),
+        false => Shape::mesh(&triangles).ok_or_else(|| "no triangle has an area".to_owned()),
+    });
+    match read {
+        Ok(shape) => {
+            findings.extend(mesh_fault(name, shape.faults(), place));
+            Some(shape)
+        }
+        Err(why) => {
+            refuse(why);
+            None
+        }
+    }
+}
+
+/// What is wrong with a mesh that is used all the same.
+fn mesh_fault(name: &str, faults: MeshFaults, place: &Option<SourcePlace>) -> Option<Diagnostic> {
+    let MeshFaults { open, inverted, .. } = faults;
+    if open + inverted == 0 {
+        return None;
+    }
+    let message = format!(
+        "{name} is no closed surface: {open} edges are not those of two triangles, at {inverted} two do not agree what is outside; its surface counts, what is wholly inside it may be missed"
+    );
+    let help = "let the CAD system write it again, as a solid";
+    Some(Diagnostic::warning("clearance-body", message).at(place.clone()).help(help))
+}

@@ -1,0 +1,258 @@
+//! A program that runs, and the proof beside it: the tool in the spindle changes, and with it the bodies.
+
+use std::collections::BTreeMap;
+
+use post_clearance::piece::Way;
+use post_clearance::proof::{Body, BodyKind, Fault, Move, Proof, Verdict};
+use post_machine::description::{Machine, RapidAxes};
+use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
+use post_readback::{BlockEffect, Motion, MotionKind, ProgramEvent};
+
+use super::bodies::{ToolShape, of_tool};
+use super::{ClearanceFound, proof};
+use crate::nc_program::NcControl;
+
+/// A tip that leaves the tool axis by less than this goes along it, mm.
+const ALONG: f64 = 1e-3;
+
+/// What is known of a pair of bodies along the program.
+#[derive(Clone, Debug)]
+pub struct PairRow {
+    /// Their names.
+    pub names: [String; 2],
+    /// They are never nearer, mm, on motions that are proven to be clear; infinite where there is none.
+    pub clear_by: f64,
+    /// The nearest that was found, mm, and the line.
+    pub nearest: (f64, u64),
+    /// Motions on which they are not clear.
+    pub faults: u64,
+    /// The first place where they are not, or the first that hits.
+    pub fault: Option<Fault>,
+}
+
+/// The proof along a program.
+pub(super) struct ClearanceWatch<'a> {
+    control: &'a NcControl,
+    fixed: Vec<Body>,
+    diameters: Vec<(u32, f64)>,
+    proof: Proof,
+    /// The tool whose bodies are looked at, and its length, mm.
+    tool: Option<(u32, Option<f64>)>,
+    /// The cutter is nowhere thinner than nearer to its tip.
+    widens: bool,
+    rows: BTreeMap<[String; 2], PairRow>,
+    found: ClearanceFound,
+    /// What is wrong by line.
+    faults: Vec<(u64, String, &'static str)>,
+}
+
+impl<'a> ClearanceWatch<'a> {
+    pub fn new(control: &'a NcControl, fixed: Vec<Body>, diameters: Vec<(u32, f64)>) -> Self {
+        let found = ClearanceFound {
+            pairs: Vec::new(),
+            lacks: Vec::new(),
+            motions: 0,
+            distances: 0,
+            findings: Vec::new(),
+        };
+        Self {
+            proof: proof(&control.machine, fixed.clone()),
+            control,
+            fixed,
+            diameters,
+            tool: None,
+            widens: true,
+            rows: BTreeMap::new(),
+            found,
+            faults: Vec::new(),
+        }
+    }
+
+    /// Takes what the program did next.
+    pub fn take(&mut self, done: &BlockEffect) {
+        match done {
+            BlockEffect::Motion(motion) => self.motion(motion),
+            BlockEffect::Event { line, event: ProgramEvent::Head(name) } => {
+                let message =
+                    format!("head {name} is swapped in: nothing is proven of what follows");
+                self.faults.push((*line, message, "prove the program of each head with --head"));
+            }
+            BlockEffect::Event { line, event: ProgramEvent::Subprogram(number) } => {
+                let message = format!(
+                    "subprogram {number} of the control runs: where it leads is not known, and not proven"
+                );
+                self.faults.push((*line, message, "put its blocks into the program"));
+                self.proof.forget();
+            }
+            BlockEffect::Event { .. } | BlockEffect::State(_) => {}
+        }
+    }
+
+    fn motion(&mut self, motion: &Motion) {
+        self.change_tool(motion);
+        self.found.motions += 1;
+        let at_rapid = motion.kind == MotionKind::Rapid;
+        let rapid = at_rapid || motion.fast;
+        let together = self.control.machine.clearance.rapid_axes == RapidAxes::Together;
+        let way = Way {
+            solver: &motion.state.solver,
+            interpolation: &motion.way,
+            ends: [&motion.from, &motion.to],
+            independent: at_rapid && !together,
+        };
+        // What goes along its own axis sweeps what it has been in before, if it is nowhere thinner above.
+        let cuts = !rapid || (self.widens && withdraws(motion, way.independent));
+        let looks = |one: &Body, other: &Body| {
+            let kinds = [one.kind, other.kind];
+            let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
+            !(touches && cuts)
+        };
+        self.proof.take(&Move { way, rapid, line: motion.line }, looks);
+    }
+
+    /// Another tool, or another length of it: what is known of the pairs is put down, and the proof begins again with its
+    /// bodies.
+    fn change_tool(&mut self, motion: &Motion) {
+        let Some(number) = motion.state.tool else {
+            return;
+        };
+        let stated = Some(motion.state.length).filter(|length| *length > 0.0);
+        let same = self.tool.filter(|(known, _)| *known == number);
+        let length = stated.or_else(|| same.and_then(|(_, length)| length));
+        let length = length.or_else(|| self.length_of(number));
+        if same.is_some_and(|(_, known)| known == length) {
+            return;
+        }
+        self.tool = Some((number, length));
+        self.put_down();
+        let machine = &self.control.machine;
+        let mut bodies = self.fixed.clone();
+        let Some(length) = length else {
+            let message =
+                format!("how long tool {number} is is not known: nothing is proven of it");
+            let help = "[tools] of the machine file, --offsets or --tool-length";
+            self.faults.push((motion.line, message, help));
+            self.proof = proof(machine, bodies);
+            return;
+        };
+        let outline = machine.outlines.iter().find(|outline| outline.number == number);
+        let tool = ToolShape { number, length, outline, radius: self.radius_of(number) };
+        let mut lacks = Vec::new();
+        bodies.extend(of_tool(machine, &tool, &mut lacks));
+        for name in lacks {
+            if !self.found.lacks.contains(&name) {
+                self.found.lacks.push(name);
+            }
+        }
+        let profile = outline.map_or(&[][..], |outline| &outline.cutter);
+        self.widens =
+            profile.windows(2).all(|pair| pair[0][0] <= pair[1][0] && pair[0][1] <= pair[1][1]);
+        self.proof = proof(machine, bodies);
+    }
+
+    fn length_of(&self, number: u32) -> Option<f64> {
+        let NcControl { machine, offsets, .. } = self.control;
+        let of = |known: &[(u32, f64)]| {
+            known.iter().find(|(tool, _)| *tool == number).map(|(_, length)| *length)
+        };
+        let table = || machine.tool_table.as_ref()?.entry(number, number)?.total_length();
+        of(&offsets.tools).or_else(|| of(&machine.tools)).or_else(table).or(offsets.length)
+    }
+
+    fn radius_of(&self, number: u32) -> Option<f64> {
+        let table = self.control.machine.tool_table.as_ref();
+        let tool = table.and_then(|table| table.entry(number, number)?.diameter());
+        let cl = || self.diameters.iter().find(|(tool, _)| *tool == number).map(|(_, size)| *size);
+        tool.or_else(cl).filter(|size| *size > 0.0).map(|size| 0.5 * size)
+    }
+
+    /// Puts down what is known of the pairs.
+    fn put_down(&mut self) {
+        self.found.distances += self.proof.distances();
+        for result in self.proof.results() {
+            let names = result.bodies.map(|place| self.proof.bodies()[place].name.clone());
+            let row = self.rows.entry(names.clone()).or_insert(PairRow {
+                names,
+                clear_by: f64::INFINITY,
+                nearest: (f64::INFINITY, 0),
+                faults: 0,
+                fault: None,
+            });
+            row.clear_by = row.clear_by.min(result.clear_by);
+            if result.nearest.0 < row.nearest.0 {
+                row.nearest = result.nearest;
+            }
+            row.faults += result.faults;
+            if row.fault.is_none() {
+                row.fault.clone_from(&result.fault);
+            }
+        }
+    }
+
+    /// What came of the program `name`.
+    pub fn finish(mut self, name: &str) -> ClearanceFound {
+        self.put_down();
+        let at = |line| Some(SourcePlace::new(name, line, "", 0..0));
+        let mut found = self.found;
+        for (line, message, help) in self.faults {
+            found.findings.push(Diagnostic::error("clearance", message).at(at(line)).help(help));
+        }
+        for row in self.rows.values() {
+            if let Some(fault) = &row.fault {
+                let message = told(&self.control.machine, row, fault);
+                let help = "another fixture, tool or path; what is only drawn too large is drawn again, a pair that may touch is left out by [clearance] ignore";
+                found
+                    .findings
+                    .push(Diagnostic::error("clearance", message).at(at(fault.line)).help(help));
+            }
+        }
+        found.pairs = self.rows.into_values().collect();
+        found
+    }
+}
+
+/// The tool is drawn out along its axis, straight.
+fn withdraws(motion: &Motion, independent: bool) -> bool {
+    let (from, to) = (&motion.from, &motion.to);
+    let moving = from.joints.iter().zip(&to.joints).filter(|(from, to)| from != to).count();
+    let way = to.pose.tip - from.pose.tip;
+    let along = way.dot(&from.pose.axis);
+    !motion.turns()
+        && !motion.way.is_curved()
+        && (moving <= 1 || !independent)
+        && along >= 0.0
+        && (way - from.pose.axis * along).norm() <= ALONG
+}
+
+/// What is wrong with a pair of bodies.
+fn told(machine: &Machine, row: &PairRow, fault: &Fault) -> String {
+    let [one, other] = &row.names;
+    let mut message = match fault.verdict {
+        Verdict::Hits => format!("{one} hits {other}"),
+        Verdict::Near => format!(
+            "{one} comes within {} mm of {other}; {} mm are to be kept",
+            Short(fault.at_most),
+            Short(fault.keep)
+        ),
+        Verdict::Unproven if fault.at_most.is_finite() => {
+            format!(
+                "that {one} stays clear of {other} is not proven: {} mm are found",
+                Short(fault.at_most)
+            )
+        }
+        Verdict::Unproven => format!(
+            "that {one} stays clear of {other} is not proven: how the axes go on the way is not known"
+        ),
+    };
+    let stands = machine.axes.iter().zip(&fault.joints);
+    let stands = stands.map(|(axis, value)| format!("{} {:.3}", axis.name, axis.reading(*value)));
+    message.push_str(&format!(" at {}", stands.collect::<Vec<_>>().join(" ")));
+    if fault.at_most.is_finite() {
+        let [x, y, z] = fault.point.into();
+        message.push_str(&format!(", on {one} at [{x:.3}, {y:.3}, {z:.3}]"));
+    }
+    if row.faults > 1 {
+        message.push_str(&format!("; not clear in {} motions", row.faults));
+    }
+    message
+}

@@ -1,0 +1,232 @@
+//! What can hit something: fixtures, the stock, outlines of tools; and the distances to keep.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use nalgebra::Vector3;
+use toml::Spanned;
+
+use super::Axis;
+use super::bounds::Bounds;
+use super::build::Builder;
+use super::keys::axes_are;
+use super::quantity::KeyedNumber;
+use super::solids::link_of;
+use super::table::{keys, words};
+use crate::diagnostic::SourcePlace;
+
+const KEPT: Bounds = Bounds {
+    table: "[clearance] ",
+    says: " mm",
+    help: "0 or more",
+    ..Bounds::from_zero("machine-body")
+};
+
+const RADIUS: Bounds = Bounds { says: " mm", ..Bounds::above_zero("machine-body") };
+
+words! {
+    /// How the axes of a rapid go.
+    RapidAxes = Independent {
+        /// Each for itself: they need not arrive together, and a proof holds for all that is between the ends.
+        Independent "independent",
+        /// All together, on the straight line between the ends.
+        Together "together",
+    }
+}
+
+keys! {
+    /// A body that can hit something. It has one of `block`, `cylinder` and `file`.
+    BodyFile {
+        /// What it hangs on: an axis letter is what that axis moves, `b` the bed, `t` the tool's side, `w` what carries the
+        /// part; w if not said. The stock hangs on the part.
+        on: Option<Spanned<String>>,
+        /// A box along X, Y and Z, from one corner to the opposite one, mm: a fixture in the machine frame with every axis at
+        /// zero, the stock in the part frame, as the CL file has it.
+        block: Option<Spanned<[[KeyedNumber; 3]; 2]>>,
+        /// A cylinder, the middles of its ends, mm, in the frame of `block`.
+        cylinder: Option<Spanned<[[KeyedNumber; 3]; 2]>>,
+        /// Radius of the cylinder, mm.
+        radius: Option<KeyedNumber> = RADIUS,
+        /// An STL file, mm, in the frame of `block`. A path is that from this file.
+        file: Option<Spanned<String>>,
+    }
+}
+
+keys! {
+    /// What `post clearance` proves, and of what.
+    ClearanceFile {
+        /// Distance that bodies keep from one another at feed, mm; 0 if not said: they do not touch.
+        keep: Option<KeyedNumber> = KEPT,
+        /// Distance that they keep at rapid, mm; that at feed if not said.
+        rapid: Option<KeyedNumber> = KEPT,
+        /// Pairs that are not looked at, such as `[["C", "A"]]`: an axis letter, `b`, `w` and `t` mean all bodies that hang
+        /// there, `stock`, `holder`, `cutter` and the name of a fixture these.
+        ignore: Vec<[Spanned<String>; 2]>,
+        /// How the axes of a rapid go where the control does not keep the tip.
+        rapid_axes: RapidAxes,
+    }
+}
+
+keys! {
+    /// A tool: its length, and how far it reaches from its axis.
+    ToolOutlineFile {
+        /// From the gauge point to the tip, mm.
+        length: Option<KeyedNumber>,
+        /// What does not cut, as a profile of revolution: points [z, r], z in mm from the gauge point towards the tip, r in
+        /// mm from the axis. What is between two points is a cone.
+        holder: Vec<[KeyedNumber; 2]>,
+        /// What cuts, likewise, z in mm from the tip towards the gauge point.
+        cutter: Vec<[KeyedNumber; 2]>,
+    }
+}
+
+/// A body that a machine file describes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GivenBody {
+    /// Its name: that of the fixture, or `stock`.
+    pub name: String,
+    /// The body of the machine that it hangs on: 0 carries the part, n is what follows the nth axis of the chain.
+    pub link: usize,
+    /// Its shape, mm: of a fixture in the machine frame, every axis at zero; of the stock in the frame of the CL file.
+    pub shape: GivenShape,
+    /// Where the machine file has it.
+    pub place: Option<SourcePlace>,
+}
+
+/// A shape that a machine file describes, mm.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GivenShape {
+    /// A box between two corners.
+    Block([Vector3<f64>; 2]),
+    /// A cylinder.
+    Cylinder {
+        /// Middles of its ends.
+        ends: [Vector3<f64>; 2],
+        /// Its radius.
+        radius: f64,
+    },
+    /// An STL file.
+    File(PathBuf),
+}
+
+/// How far a tool reaches from its axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToolOutline {
+    /// Its number.
+    pub number: u32,
+    /// Points [z, r] of what does not cut, mm, z from the gauge point towards the tip.
+    pub holder: Vec<[f64; 2]>,
+    /// Points [z, r] of what cuts, mm, z from the tip towards the gauge point.
+    pub cutter: Vec<[f64; 2]>,
+}
+
+/// What is kept between bodies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ClearanceRules {
+    /// Distance at feed, mm.
+    pub keep: f64,
+    /// Distance at rapid, mm.
+    pub rapid: f64,
+    /// Pairs that are not looked at.
+    pub ignore: Vec<[String; 2]>,
+    /// How the axes of a rapid go.
+    pub rapid_axes: RapidAxes,
+}
+
+impl Builder<'_> {
+    /// Fixtures.
+    pub(super) fn fixtures(
+        &mut self,
+        file: &BTreeMap<Spanned<String>, Spanned<BodyFile>>,
+        axes: &[Axis],
+    ) -> Vec<GivenBody> {
+        let bodies = file.iter().filter_map(|(name, body)| {
+            let on = body.get_ref().on.as_ref();
+            let link = match on {
+                Some(on) => link_of(on.get_ref(), axes),
+                None => Some(0),
+            };
+            let Some(link) = link else {
+                let span = on.map_or_else(|| name.span(), Spanned::span);
+                let message = format!("fixture {} hangs on nothing of the machine", name.get_ref());
+                let help = format!("{}; w, b and t are part, bed and tool", axes_are(axes));
+                self.fault("machine-body", span, message, &help);
+                return None;
+            };
+            self.body(name.get_ref(), link, body)
+        });
+        bodies.collect()
+    }
+
+    /// The stock.
+    pub(super) fn stock(&mut self, file: Option<&Spanned<BodyFile>>) -> Option<GivenBody> {
+        let file = file?;
+        if let Some(on) = &file.get_ref().on {
+            let message = "the stock hangs on the part and on nothing else".to_owned();
+            self.fault("machine-body", on.span(), message, "leave `on` out");
+        }
+        self.body("stock", 0, file)
+    }
+
+    fn body(&mut self, name: &str, link: usize, file: &Spanned<BodyFile>) -> Option<GivenBody> {
+        let BodyFile { block, cylinder, radius, file: stl, .. } = file.get_ref();
+        let radius = self.checked(radius);
+        let shape = match (block, cylinder, radius, stl) {
+            (Some(corners), None, None, None) => {
+                let [one, other] = corners.get_ref().each_ref().map(|corner| self.vector(corner));
+                GivenShape::Block([one.inf(&other), one.sup(&other)])
+            }
+            (None, Some(ends), Some(radius), None) => {
+                let ends = ends.get_ref().each_ref().map(|end| self.vector(end));
+                GivenShape::Cylinder { ends, radius }
+            }
+            (None, None, None, Some(stl)) => GivenShape::File(self.stl_path("machine-body", stl)?),
+            _ => {
+                let message = format!("{name} has no shape, or more than one");
+                let help = "block = [[x, y, z], [x, y, z]], or cylinder = [[x, y, z], [x, y, z]] with radius, or file = \"NAME.stl\"";
+                self.fault("machine-body", file.span(), message, help);
+                return None;
+            }
+        };
+        let place = self.sources.place(file.span());
+        Some(GivenBody { name: name.to_owned(), link, shape, place })
+    }
+
+    /// What is to be kept.
+    pub(super) fn clearance(&mut self, file: &ClearanceFile) -> ClearanceRules {
+        let keep = self.checked(&file.keep).unwrap_or(0.0);
+        ClearanceRules {
+            keep,
+            rapid: self.checked(&file.rapid).unwrap_or(keep),
+            ignore: file
+                .ignore
+                .iter()
+                .map(|pair| pair.each_ref().map(|name| name.get_ref().clone()))
+                .collect(),
+            rapid_axes: file.rapid_axes,
+        }
+    }
+
+    /// The points of a profile; its radii are no less than zero.
+    pub(super) fn profile(&mut self, what: &str, points: &[[KeyedNumber; 2]]) -> Vec<[f64; 2]> {
+        let mut profile = Vec::with_capacity(points.len());
+        for [z, r] in points {
+            let [along, radius] = [z, r].map(|number| self.number(number));
+            if radius < 0.0 {
+                let message = format!("{what} has the radius {radius} mm, below zero");
+                self.fault("machine-body", r.span(), message, "points are [z, r]");
+            }
+            profile.push([along, radius]);
+        }
+        if let [[z, _]] = points {
+            let message = format!("{what} has one point");
+            self.fault(
+                "machine-body",
+                z.span(),
+                message,
+                "two points [z, r] make a cylinder or a cone",
+            );
+        }
+        profile
+    }
+}

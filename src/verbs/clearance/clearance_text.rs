@@ -1,0 +1,37 @@
+//! The table of what was proven.
+
+use post_job::clearance::ClearanceFound;
+use post_job::text::number;
+use post_job::text_table::{NamedValues, TextTable};
+
+/// What was proven, as lines.
+pub fn text(found: &ClearanceFound) -> String {
+    let mut rows = NamedValues::default();
+    rows.row("motions", found.motions);
+    rows.row("pairs of bodies", found.pairs.len());
+    rows.row("distances computed", found.distances);
+    if !found.lacks.is_empty() {
+        rows.row("without a body, not looked at", found.lacks.join(", "));
+    }
+    let mut text = rows.table();
+    if found.pairs.is_empty() {
+        text.push_str("\nno pair of bodies moves against one another: nothing is proven\n");
+        return text;
+    }
+    let mut table =
+        TextTable::headed(2, ["", "", "clear by, mm", "nearest, mm", "line", "not clear"]);
+    for row in &found.pairs {
+        let distance = |value: f64| match value.is_finite() {
+            true => number(value, 3),
+            false => "-".to_owned(),
+        };
+        let line = if row.nearest.1 > 0 { row.nearest.1.to_string() } else { "-".to_owned() };
+        let faults = if row.faults > 0 { row.faults.to_string() } else { "-".to_owned() };
+        let [one, other] = row.names.clone();
+        let [clear, nearest] = [row.clear_by, row.nearest.0].map(distance);
+        table.row([one, other, clear, nearest, line, faults]);
+    }
+    text.push('\n');
+    text.push_str(&table.text());
+    text
+}

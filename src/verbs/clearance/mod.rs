@@ -1,0 +1,55 @@
+//! `post clearance`: whether anything hits anything while an NC program runs.
+
+mod clearance_text;
+
+use clap::Args;
+
+use post_cli::arguments::ProgramArguments;
+use post_cli::arguments::flag_values::file;
+use post_cli::terminal;
+use post_job::clearance::{self, ClearanceRequest};
+use post_job::failure::Failure;
+use post_job::files::PathArg;
+use post_job::nc_program::NcControl;
+use post_job::session::Session;
+use post_machine::diagnostic::Severity;
+
+/// Proves that nothing hits anything while an NC program runs, rapids and ways between the cuts among it.
+///
+/// Bodies are those of the machine file: `[solids]`, `[fixture.NAME]`, `[stock]`, and the outlines of its tools
+/// (`[tools.N]`). Of each pair that moves against one another it is proven that they keep the distance of `[clearance]` at
+/// every instant of every motion, not at samples of it; what is not proven counts as a hit. Cutters may be in the stock at
+/// feed. The stock is that before the first cut: nothing is taken from it.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post clearance part.h --machine dmu50-with-vise.toml
+  post clearance part.nc --machine my-mill.toml --cl part.cls
+  post clearance part.nc -m my-mill.toml --set clearance.keep=2
+
+Exit codes: 0 proven: nothing that has a body hits anything; 1 something hits, or that it does not is not proven, or a
+block was refused; 2 the command line is wrong.")]
+pub struct ClearanceArguments {
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// The NC program, `-` for standard input.
+    #[arg(value_name = "NC-FILE", value_parser = file())]
+    input: PathArg,
+
+    /// The CL file of the program: how thick the cutters are that the machine file does not describe (CUTTER).
+    #[arg(long, value_name = "CL-FILE", value_parser = file())]
+    cl: Option<PathArg>,
+}
+
+/// Does as the arguments say.
+pub fn run(session: &Session, arguments: &ClearanceArguments) -> Result<(), Failure> {
+    let control = NcControl::new(session, &arguments.program.settings())?;
+    let ClearanceArguments { input, cl, .. } = arguments;
+    let request = ClearanceRequest { input: input.clone(), cl: cl.clone() };
+    let found = clearance::clearance(session, &control, &request)?;
+    terminal::print_beside(session, &clearance_text::text(&found), false);
+    let (errors, warnings): (Vec<_>, Vec<_>) =
+        found.findings.into_iter().partition(|finding| finding.severity == Severity::Error);
+    session.findings(&warnings);
+    if errors.is_empty() { Ok(()) } else { Err(errors.into()) }
+}

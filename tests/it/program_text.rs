@@ -361,7 +361,7 @@ TOUCH = ["TCH PROBE 427 MEASURE COORDINATE ~", "Q263={n*unit:.3} ;1ST POINT ~", 
 #[test]
 fn the_stock_stands_in_the_program() {
     let folder = tempfile::tempdir().unwrap();
-    let stock = "[workpiece]\nstock = { min = [-5, -5, -10], max = [35, 5, 20.5] }\n";
+    let stock = "[stock]\nblock = [[-5, -5, -10], [35, 5, 20.5]]\n";
     let form = "extends = \"dmu50\"\n[control.heidenhain]\nblk_form = true\n";
     let lines = |machine: &str| good(post(folder.path(), machine, &["-o", "-", "-"], CL));
     let written = lines(&format!("{form}{stock}"));
@@ -373,5 +373,5 @@ fn the_stock_stands_in_the_program() {
     assert!(lines(&format!("{text}{stock}")).contains("(FROM -10.0)"));
     let flat = stock.replace("35, 5,", "35, -5,");
     let done = post(folder.path(), &format!("{form}{flat}"), &["-o", "-", "-"], CL);
-    assert!(done.code == 1 && done.err.contains("machine-stock"), "{}", done.err);
+    assert!(done.code == 1 && done.err.contains("machine-body"), "{}", done.err);
 }

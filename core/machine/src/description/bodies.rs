@@ -93,6 +93,22 @@ pub struct GivenBody {
     pub place: Option<SourcePlace>,
 }
 
+impl GivenBody {
+    /// Least and largest corner of the box along the axes of its frame that it fills, mm; none of an STL file.
+    pub fn extents(&self) -> Option<[[f64; 3]; 2]> {
+        let [least, most] = match &self.shape {
+            GivenShape::Block(corners) => *corners,
+            GivenShape::Cylinder { ends: [one, other], radius } => {
+                let along = (other - one).try_normalize(0.0).unwrap_or_default();
+                let aside = along.map(|part| radius * (1.0 - part * part).max(0.0).sqrt());
+                [one.inf(other) - aside, one.sup(other) + aside]
+            }
+            GivenShape::File(_) => return None,
+        };
+        Some([least.into(), most.into()])
+    }
+}
+
 /// A shape that a machine file describes, mm.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GivenShape {
@@ -174,6 +190,12 @@ impl Builder<'_> {
         let shape = match (block, cylinder, radius, stl) {
             (Some(corners), None, None, None) => {
                 let [one, other] = corners.get_ref().each_ref().map(|corner| self.vector(corner));
+                if one.iter().zip(&other).any(|(one, other)| one == other) {
+                    let message = format!("{name} has no room between its corners");
+                    let help = "corners that differ in X, Y and Z";
+                    self.fault("machine-body", corners.span(), message, help);
+                    return None;
+                }
                 GivenShape::Block([one.inf(&other), one.sup(&other)])
             }
             (None, Some(ends), Some(radius), None) => {

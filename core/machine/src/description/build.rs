@@ -275,7 +275,6 @@ struct AxisFreeRules {
     spindle: SpindleSpeeds,
     arcs: Arcs,
     word_rules: Vec<WordRule>,
-    stock: Option<[[f64; 3]; 2]>,
     program: ProgramRules,
     smoothing: SmoothingRules,
 }
@@ -365,7 +364,6 @@ impl Builder<'_> {
             tool_table,
             spindle: own.spindle,
             word_rules: own.word_rules,
-            stock: own.stock,
             smoothing: own.smoothing,
             program: own.program,
             accuracy: own.accuracy,
@@ -477,19 +475,9 @@ impl Builder<'_> {
         let mut program = self.program(&file.program, rotary);
         let smoothing = file.program.smoothing.as_ref();
         let smoothing = smoothing.map(|file| self.smoothing(file)).unwrap_or_default();
-        let stock = file.workpiece.stock.as_ref().and_then(|stock| self.stock(stock));
         // Dialects tell of it among what is known ahead.
-        program.looks_ahead |= stock.is_some();
-        AxisFreeRules {
-            accuracy,
-            control_point,
-            spindle,
-            arcs,
-            word_rules,
-            stock,
-            program,
-            smoothing,
-        }
+        program.looks_ahead |= file.stock.is_some();
+        AxisFreeRules { accuracy, control_point, spindle, arcs, word_rules, program, smoothing }
     }
 
     /// What is wrong with the tables that say nothing of axes.

@@ -14,7 +14,6 @@ use super::profile::ProfileFile;
 use super::program_file::ProgramFile;
 use super::quantity::KeyedNumber;
 use super::servo_file::ServoFile;
-use super::stock::StockFile;
 use super::table::{
     Count, DeValue, EntryError, Key, KeyType, Schemas, Slip, Spanned, Value, defined, keys, words,
 };
@@ -89,7 +88,8 @@ keys! {
         solids: BTreeMap<Spanned<String>, Spanned<String>> = BODIES,
         /// What holds the part, or is in the way besides, by names of your own: for `post clearance`.
         fixture: BTreeMap<Spanned<String>, Spanned<BodyFile>>,
-        /// What is cut, as it is before it is cut: for `post clearance`.
+        /// What is cut, as it is before it is cut: for `post clearance`, for texts of the program, and for dialects that tell the
+        /// control of it, which otherwise take where the tool goes.
         stock: Option<Spanned<BodyFile>>,
         /// Distances that bodies keep from one another: for `post clearance`.
         clearance: ClearanceFile,
@@ -127,9 +127,6 @@ keys! {
         /// How the part is turned about its Z, degrees, right-handed: counter-clockwise for who looks down on it, from the
         /// machine's X to the part's with all axes at zero; 0 if not said, and `--turn DEG` for one job.
         turn: Option<KeyedNumber>,
-        /// The raw part, a box along the axes of its frame: for texts of the program, and for dialects that tell the control
-        /// of it. Where it is not said these take where the tool goes.
-        stock: Option<Spanned<StockFile>>,
     }
 }
 

@@ -31,7 +31,6 @@ mod setting;
 pub(crate) mod smoothing;
 mod solids;
 mod spindle;
-mod stock;
 pub(crate) mod table;
 mod tools;
 
@@ -42,6 +41,7 @@ use nalgebra::Vector3;
 
 pub use accuracy::{AccuracyRules, ControlPoint, SHARE_AT_POLES};
 pub use arcs::Arcs;
+pub use bodies::{ClearanceRules, GivenBody, GivenShape, RapidAxes, ToolOutline};
 pub use build::{Evaluated, MachineReading, examine, load};
 pub use choice::{Retract, Rewind, SolutionCriterion, SolutionRules};
 pub use cl_words::WordRule;
@@ -61,7 +61,6 @@ pub use program::{ProgramRules, ProgramText, TextPlace};
 pub use schema::schema;
 pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
-pub use bodies::{ClearanceRules, GivenBody, GivenShape, RapidAxes, ToolOutline};
 pub use solids::Solid;
 pub use spindle::SpindleSpeeds;
 pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
@@ -115,8 +114,6 @@ pub struct Machine {
     pub control: ControlRules,
     /// How fast its spindle turns.
     pub spindle: SpindleSpeeds,
-    /// The raw part, least and largest corner, mm, part frame; none if the file does not say.
-    pub stock: Option<[[f64; 3]; 2]>,
     /// Lines of the program for words of the CL file.
     pub word_rules: Vec<WordRule>,
     /// Tolerances within which the control may leave the path, by operation.
@@ -149,7 +146,7 @@ pub struct Machine {
     pub solids: Vec<Solid>,
     /// What holds the part, and what is in the way besides.
     pub fixtures: Vec<GivenBody>,
-    /// What is cut.
+    /// The raw part; none if the file does not say.
     pub stock: Option<GivenBody>,
     /// How far tools reach from their axes.
     pub outlines: Vec<ToolOutline>,

@@ -1,7 +1,9 @@
 //! Text of the machine file's own: what its templates are filled with, and where their lines come.
 
 use post_machine::axis_words;
-use post_machine::description::{Machine, OutputUnits, ProgramRules, Smoothing, TextPlace};
+use post_machine::description::{
+    GivenBody, Machine, OutputUnits, ProgramRules, Smoothing, TextPlace,
+};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::program_text::{
     CompensationFacts, Extents, Facts, OperationFacts, PlaneFacts, ProgramFacts, SpindleFacts,
@@ -50,7 +52,11 @@ impl<'a> ProgramTexts<'a> {
             tools: ahead.map(|ahead| ahead.tools().into_iter().map(tool_facts).collect()),
             extents: ahead.and_then(|ahead| ahead.extents).map(|[min, max]| Extents { min, max }),
             time: ahead.and_then(|ahead| ahead.time_s),
-            stock: machine.stock.map(|[min, max]| Extents { min, max }),
+            stock: machine
+                .stock
+                .as_ref()
+                .and_then(GivenBody::extents)
+                .map(|[min, max]| Extents { min, max }),
         };
         Self {
             rules: &machine.program,

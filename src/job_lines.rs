@@ -3,12 +3,13 @@
 //! What the user says besides goes before the file's.
 
 use std::ffi::{OsStr, OsString};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use post_machine::diagnostic::Diagnostic;
 
 use post_job::failure::Failure;
-use post_job::files::PathArg;
+use post_job::files::{FileFault, PathArg};
 use post_job::job_file::{
     self, JobFile, JobKeys, JobMark, JobProgram, is_job_file, job_of_program,
 };
@@ -208,6 +209,14 @@ fn job_of_head(
     let reads = matches!(takes, Takes::Against | Takes::Program | Takes::From);
     if !reads || words.iter().any(names_one) {
         return Ok(None);
+    }
+    // Before what is missing besides: a name that was mistyped.
+    if let Some(program) = words.get(2).map(PathBuf::from)
+        && !program.as_os_str().as_encoded_bytes().starts_with(b"-")
+        && let Err(error) = program.metadata()
+        && error.kind() == ErrorKind::NotFound
+    {
+        return Err(FileFault::read(&program, error).into());
     }
     // Of two programs the new one is mostly that of the job.
     for word in words.iter().skip(2).rev() {

@@ -25,6 +25,7 @@ mod nc_to_cl;
 pub mod old_summary;
 mod one_program;
 pub mod other_dialect;
+mod other_language;
 pub mod place;
 pub mod plan;
 pub mod plan_rounds;

@@ -11,7 +11,7 @@ use post_readback::interpret::{Interpreter, Limits, ReadReport};
 use post_readback::lexicon::Lexicon;
 use post_readback::{FedRapids, MOST_FAULTS, Offsets, ProgramRun, turns_the_spindle};
 
-use super::{machine_files, plugin_finder, unused_options};
+use super::{machine_files, other_language, plugin_finder, unused_options};
 use crate::failure::Failure;
 use crate::files::{FileFault, PathArg};
 use crate::session::Session;
@@ -117,6 +117,8 @@ impl NcControl {
         input: impl Read + Seek + Send + 'i,
     ) -> Result<RunningProgram<'i>, Box<Diagnostic>> {
         let Self { counted, lexicon, offsets, own_lines, limits, .. } = self;
+        let mut input = input;
+        other_language::refuse(self, name, &mut input)?;
         let input: ProgramText<'i> = Box::new(input);
         let program = Interpreter::new(counted, lexicon, offsets, *limits, name, input)?;
         Ok(program.declaring(own_lines.iter().map(String::as_str)))

@@ -365,17 +365,17 @@ TOOL PATH/A,TOOL,T1
 LOAD/TOOL,1,ADJUST,1
 SPINDL/RPM,3000,CLW
 RAPID
-GOTO/0,0,60,0,0,1
-FEDRAT/MMPM,600
-GOTO/0,0,-5
-GOTO/40,0,-5
+GOTO/0,0,50,0,0,1
+FEDRAT/MMPM,500
+GOTO/0,0,5
+GOTO/50,0,5
 RAPID
-GOTO/40,0,60
+GOTO/50,0,50
 STOP
 LOAD/TOOL,2,ADJUST,2
 SPINDL/RPM,500,CLW
 RAPID
-GOTO/0,50,60
+GOTO/0,50,50
 OPSTOP
 CYCLE/TAP,RAPTO,5,FEDTO,-15,MMPM,500
 GOTO/0,50,0
@@ -398,6 +398,9 @@ fn a_stop_before_a_hole_and_a_wait_at_the_end_are_not_left_out() {
     ];
     for (dialect, stop, optional, wait) in words {
         let posted = Posted::new(STOPPED, dialect);
+        // Across on the level of the retract: nothing comes near.
+        let right = posted.verify(&posted.text, &["--posted"]);
+        assert!(!right.err.contains("warning[rapid]"), "{dialect}: {}", right.err);
         posted.told((stop, "\n"), "error[event]: a stop is left out");
         posted.told((optional, "\n"), "error[event]: an optional stop is left out");
         posted.told((wait, "\n"), "error[event]: a dwell of 2 s is left out");
@@ -433,6 +436,62 @@ fn a_program_says_what_it_stands_on() {
         let other = posted.verify(&changed, &[]);
         assert_eq!(other.code, 0, "a program of another hand: {}", other.err);
     }
+}
+
+/// A tap in a rigid holder, and the spindle not bound to the feed.
+#[test]
+fn a_rigid_tap_has_its_word() {
+    let fanuc = Posted::new(STOPPED, "fanuc");
+    let without = "[hole]: a hole is tapped without M29 ahead of the cycle";
+    fanuc.told(("M29 S500\n", ""), &format!("warning{without}"));
+    let changed = fanuc.text.replace("M29 S500\n", "");
+    let own = fanuc.verify(&changed, &["--posted"]);
+    assert!(own.code == 1 && own.err.contains(&format!("error{without}")), "{}", own.err);
+    let floating = fanuc.verify(&changed, &["--posted", "--set", "control.fanuc.tapping=floating"]);
+    assert_eq!(floating.code, 0, "{}", floating.err);
+}
+
+/// A later tool change without a retract, in a program that names the job that it was posted from.
+#[test]
+fn a_program_of_a_job_is_held_to_its_retracts() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [cl, job, nc] = ["part.cls", "part.job.toml", "part.nc"].map(path);
+    fs::write(&cl, STOPPED).unwrap();
+    fs::write(
+        &job,
+        "machine = \"vmc\"\ncl = \"part.cls\"\noutput = \"part.nc\"\ntool_length = 100\n",
+    )
+    .unwrap();
+    assert_eq!(post(&["-q", &job]).code, 0);
+    assert_eq!(post(&["verify", "-q", &nc]).code, 0);
+    let text = fs::read_to_string(&nc).unwrap();
+    let changed = text.replace("M0\nG53 G0 Z20.000\n", "M0\n");
+    assert_ne!(changed, text);
+    fs::write(&nc, changed).unwrap();
+    let run = post(&["verify", "-q", &nc]);
+    assert!(run.err.contains("short of its retract where the tool is changed"), "{}", run.err);
+}
+
+/// Another control's program is told once, and a name that was mistyped before what is missing besides.
+#[test]
+fn another_language_is_told_once() {
+    let machines = [("fanuc", "heidenhain"), ("heidenhain", "fanuc"), ("fanuc", "siemens")];
+    for (written, read) in
+        machines.into_iter().chain([("siemens", "fanuc"), ("siemens", "heidenhain")])
+    {
+        let posted = Posted::new(STOPPED, written);
+        let nc = posted.path("part.nc");
+        let cl = posted.path("part.cls");
+        for verb in [&["read", &nc][..], &["predict", &nc], &["verify", &nc, "--against", &cl]] {
+            let run = post(&[verb, &["-m", "vmc", "--dialect", read]].concat());
+            assert_eq!(run.code, 1, "{written} as {read}: {}", run.err);
+            assert_eq!(run.err.matches("error[").count(), 1, "{written} as {read}: {}", run.err);
+            assert!(run.err.contains("error[nc-language]: "), "{}", run.err);
+        }
+    }
+    let run = post(&["verify", "nosuch.nc"]);
+    assert!(run.code == 1 && run.err.contains("nosuch.nc"), "{}", run.err);
 }
 
 /// Right ones that were refused: a plan that comes to rest at the end of a cut by ways shorter than a rounding, and a first

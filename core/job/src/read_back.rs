@@ -28,6 +28,9 @@ use crate::nc_program::{ProgramText, RunningProgram};
 use crate::session::Session;
 use crate::settings::{JobSettings, Msys};
 
+/// The word that makes the taps behind it rigid, on controls whose dialect names it.
+const RIGID: &str = "M29";
+
 /// What a program is read with.
 pub struct ReadingSetup<'a> {
     /// The run.
@@ -337,6 +340,9 @@ pub fn hold<C: Course>(
     let mut findings = found_by_running(name, &run, machine);
     let report = run.program().report();
     findings.extend(left_to_others(name, report, &control.spoken, own));
+    if plugin_finder::text(reading.finder, machine, "tapping").as_deref() == Some("rigid") {
+        findings.extend(bare_taps(name, report, &control.spoken, own));
+    }
     let blocks = report.blocks;
     let found = verifier.finish(&mut |line| watch.line(line));
     if found.gave_up && watch.runs_on() {
@@ -373,6 +379,29 @@ fn found_by_running(
     }
     findings.extend(nc_program::unknown_words(name, report, machine));
     findings
+}
+
+/// Taps that should be rigid, of the program `name`, without the word ahead of them that makes them so.
+fn bare_taps(
+    name: &str,
+    report: &ReadReport,
+    spoken: &DialectVocabulary,
+    own: bool,
+) -> Option<Diagnostic> {
+    let (line, count) = report.bare_taps?;
+    spoken.words.iter().find(|word| word.word == RIGID && word.meaning == Meaning::Nothing)?;
+    let holes = if count == 1 { "a hole is".to_owned() } else { format!("{count} holes are") };
+    let message = format!(
+        "{holes} tapped without {RIGID} ahead of the cycle: spindle and feed go together only if a parameter says so, and a tap in a rigid holder breaks"
+    );
+    let finding = match own {
+        true => Diagnostic::error("hole", message),
+        false => Diagnostic::warning("hole", message),
+    };
+    let help = format!(
+        "write {RIGID} ahead of it, or say tapping = \"floating\" for a holder that gives way"
+    );
+    Some(finding.help(help).at(Some(SourcePlace::new(name, line, "", 0..0))))
 }
 
 /// What the program `name` leaves to whatever ran before it: modes that it does not set, and where the tool stands as it

@@ -99,6 +99,11 @@ impl CycleWords {
         }
     }
 
+    /// Taps are written for a holder that gives way.
+    pub(crate) fn floats(&self) -> bool {
+        self.rigid.is_none()
+    }
+
     /// Cycles of the control that the options leave.
     pub(crate) fn codes(&self) -> impl Iterator<Item = &'static CycleCode> {
         let (shift, settled) = (self.shift, self.taps);

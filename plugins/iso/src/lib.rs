@@ -160,6 +160,10 @@ impl<C: Control> Iso<C> {
     }
 }
 
+/// What taps rely on where the spindle is not bound to the feed.
+const FLOATING: &str = "taps are for a holder that gives way (tapping = \"floating\"): a rigid one breaks them unless a \
+                        parameter binds spindle and feed";
+
 impl<C: Control> Dialect for Iso<C> {
     fn options() -> &'static [OptionSpec] {
         C::TABLE.options
@@ -188,7 +192,9 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn relies_on(&self) -> Vec<String> {
-        self.engine.table.relies.iter().map(|sentence| (*sentence).to_owned()).collect()
+        let floating = self.engine.cycles.floats().then_some(FLOATING);
+        let relies = self.engine.table.relies.iter().copied().chain(floating);
+        relies.map(str::to_owned).collect()
     }
 
     #[inline]

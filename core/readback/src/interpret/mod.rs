@@ -93,6 +93,8 @@ pub struct ReadReport {
     pub unsaid: Option<(u64, String)>,
     /// Modes that the program has not set, and the lines of the first words whose meaning hangs on them.
     pub relied: Vec<(u64, ModalGroup)>,
+    /// Line of the first tap whose cycle no word makes rigid, and how many there are.
+    pub bare_taps: Option<(u64, u64)>,
     /// The line at which a tool is changed or led to the part first, if these axes, which the machine file retracts, were
     /// led nowhere before: where they stand then is not known.
     pub unretracted: Option<(u64, String)>,

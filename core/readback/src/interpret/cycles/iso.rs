@@ -248,6 +248,8 @@ fn make(
     };
     let by_code = matches!(running.code.parts(), (84, 2 | 3) | (274 | 284, 0));
     if !control.modal.rigid_taps && !by_code {
+        let line = control.line;
+        control.report.bare_taps.get_or_insert((line, 0)).1 += 1;
         return drill(control, hole);
     }
     // The cycle turns the spindle itself, whatever was said before.

@@ -16,6 +16,10 @@ const MOST_FAULTS: usize = 50;
 /// Largest size of a tool, mm: more is a slip of the unit.
 const MOST_SIZE: f64 = 10_000.0;
 
+/// A tool shorter than this from the gauge point has no holder, mm: a table in inches that is read in millimetres has
+/// such.
+const SHORTEST: f64 = 15.0;
+
 /// Reads a file that a library names.
 pub type ReadNear<'a> = &'a dyn Fn(&Path) -> io::Result<String>;
 
@@ -209,6 +213,15 @@ impl<'a> ToolReading<'a> {
                 message,
                 "a cutter's radius is above zero; wear has its own place",
             );
+        }
+        let out = tool.stick_out.unwrap_or(0.0).max(SHORTEST);
+        if let Some(length) = tool.length.filter(|length| *length > 0.0 && *length < out) {
+            let message = format!(
+                "tool {number} is {} mm long from the gauge point to the tip, and {} mm are the least that it can be",
+                Short(length),
+                Short(out)
+            );
+            self.warn(tool.line, message, "are the units of the file others ([tools] units), or is it an offset that was touched off?");
         }
         if tool.length.is_none() && tool.length_wear != 0.0 {
             let message = format!("tool {number} has wear in its length, and no length");

@@ -509,6 +509,13 @@ impl Machine {
         self.control.tcp == Tcp::Post && self.axes.iter().any(turns)
     }
 
+    /// The words of a program hold for tools of one length alone: they are axis positions, and a head turns the tool.
+    pub fn holds_on_length_alone(&self) -> bool {
+        let first_linear = self.axes.iter().position(|axis| !axis.joint.rotary);
+        let mut behind = self.axes.iter().skip(first_linear.unwrap_or(0));
+        self.control.tcp == Tcp::Post && behind.any(|axis| axis.joint.rotary)
+    }
+
     /// The head that `HEAD/name` swaps in.
     pub fn head(&self, name: &str) -> Option<&Head> {
         self.heads.iter().find(|head| head.name == name)

@@ -1,6 +1,6 @@
 //! How long the tools are, by whoever says it, and which were used.
 
-use post_machine::description::{Tcp, ToolData, ToolTable};
+use post_machine::description::{ToolData, ToolTable};
 use post_machine::diagnostic::Diagnostic;
 use serde::Serialize;
 
@@ -89,7 +89,8 @@ impl ConfigurationStage<'_> {
         }
         let told_at_the_end = self.base.is_opened();
         if self.is_listed(line) && self.source == LengthSource::Unknown && !told_at_the_end {
-            self.findings.at(line, unknown_length(used.number, self.length_matters()));
+            self.findings
+                .at(line, unknown_length(used.number, self.machine.holds_on_length_alone()));
         }
         self.tools.push(used);
     }
@@ -126,16 +127,6 @@ impl ConfigurationStage<'_> {
         {
             self.findings.at(line, finding);
         }
-    }
-
-    /// Does the program depend on the tool length? On a machine whose head turns, if the control does not keep the tip.
-    fn length_matters(&self) -> bool {
-        let machine = self.machine;
-        if machine.control.tcp == Tcp::Control {
-            return false;
-        }
-        let first_linear = machine.axes.iter().position(|axis| !axis.joint.rotary);
-        machine.axes.iter().skip(first_linear.unwrap_or(0)).any(|axis| axis.joint.rotary)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The frame around the moves: retracts, positions of the machine, the way to a first position.
 
-use post_machine::axis_words::{self, AxisWords, WordValues};
-use post_machine::description::{Machine, Tcp, TextPlace};
+use post_machine::axis_words::{self, AxisWords, WordValues, unit_length};
+use post_machine::description::{Machine, OutputUnits, Tcp, TextPlace};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
@@ -223,6 +223,13 @@ impl EmitStage<'_> {
                 )
                 .help("the length of the tool must stand in its own line of the table"),
             );
+        }
+        if let (Some(length), true) = (tool.length, machine.holds_on_length_alone()) {
+            let units = machine.control.units;
+            let unit = if units == OutputUnits::Inch { "inch" } else { "mm" };
+            let length = length / unit_length(units);
+            let text = format!("for tool {} of {length:.3} {unit} alone", tool.number);
+            self.writer.push(line, Event::Comment { text: &text });
         }
         self.instead(line, TextPlace::ToolChange);
         self.writer.push(

@@ -95,6 +95,10 @@ fn the_machine(job: &SheetJob<'_>, programs: &[(&PathArg, &PostingReport)]) -> S
         }
         .to_owned(),
     );
+    if machine.holds_on_length_alone() {
+        let words = "of the lengths below alone: a head turns the tool, and the words are axis positions; a tool that is measured otherwise is posted again";
+        row("The program holds for tools", words.to_owned());
+    }
     if machine.length_axis == LengthAxis::None {
         row("Length registers", NO_LENGTH.to_owned());
     }

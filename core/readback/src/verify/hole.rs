@@ -200,7 +200,7 @@ impl<C: Course> Verifier<'_, C> {
             self.fault("hole", message, Some(motion), Some(cl_line), Some(by));
         }
         self.compare_cycle(motion, index);
-        self.miss_events(Some(motion), index);
+        self.miss_events(Some(BlockPlace::of(motion)), index);
         self.look_for_detours(Some(motion));
         self.made = None;
         self.hole = Some(HoleRun {

@@ -141,13 +141,12 @@ impl<C: Course> Verifier<'_, C> {
         self.apart = false;
         self.made = None;
         if let Some(first) = self.reach.iter().position(|span| !span.is_empty()) {
-            self.miss_events(Some(motion), first);
+            self.miss_events(Some(BlockPlace::of(motion)), first);
         }
     }
 
-    /// Events in front of the element at `first`, where a cut or a hole begins with this motion, must have been met; none:
-    /// the program ends.
-    pub(super) fn miss_events(&mut self, motion: Option<&Motion>, first: usize) {
+    /// Events in front of the element at `first`, where the program comes to at `place`, must have been met; none: it ends.
+    pub(super) fn miss_events(&mut self, place: Option<BlockPlace>, first: usize) {
         let mut missed = Vec::new();
         for index in 0..first {
             if let Some(element) = self.track.get(index)
@@ -159,7 +158,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         for (name, line) in missed {
             let message = format!("{name} is left out");
-            self.fault("event", message, motion, Some(line), None);
+            self.fault_at("event", message, place, Some(line), None);
         }
     }
 
@@ -269,6 +268,7 @@ impl<C: Course> Verifier<'_, C> {
         // Up to the next cut of which nothing was reached.
         let reached = self.reach.iter().rposition(|span| !span.is_empty());
         let mut index = 0;
+        let mut other = None;
         let place = Some(BlockPlace::of_line(line));
         while let Some(element) = self.track.get(index) {
             let ahead = reached.is_none_or(|reached| index > reached) && Some(index) >= self.next;
@@ -277,14 +277,16 @@ impl<C: Course> Verifier<'_, C> {
             }
             if let ElementKind::Event(asked, met @ false) = &mut element.what {
                 let cl_line = element.line;
+                if !state::same_event(asked, event, element.asked.spindle) {
+                    other.get_or_insert(index);
+                    index += 1;
+                    continue;
+                }
                 *met = true;
-                let same = state::same_event(asked, event, element.asked.spindle);
                 let name = state::event_name(event);
-                let asked = state::event_name(asked);
-                if !same {
-                    let message = format!("{name} in place of {asked}");
-                    self.fault_at("event", message, place, Some(cl_line), None);
-                } else if self.next.is_none() && !self.stand_behind(index) {
+                // One that stands before it will not come any more.
+                self.miss_events(place, index);
+                if self.next.is_none() && !self.stand_behind(index) {
                     let message = format!("{name} before the CL file asks for it");
                     self.fault_at("event", message, place, Some(cl_line), None);
                 }
@@ -292,7 +294,26 @@ impl<C: Course> Verifier<'_, C> {
             }
             index += 1;
         }
-        let message = format!("{} that the CL file does not ask for", state::event_name(event));
+        self.other_event(place, event, other);
+    }
+
+    /// The program stops or waits otherwise than it should: in place of the event of the course at `other`, if one is due.
+    fn other_event(
+        &mut self,
+        place: Option<BlockPlace>,
+        event: &ProgramEvent,
+        other: Option<usize>,
+    ) {
+        let name = state::event_name(event);
+        if let Some(element) = other.and_then(|index| self.track.get(index))
+            && let ElementKind::Event(asked, met) = &mut element.what
+        {
+            *met = true;
+            let cl_line = Some(element.line);
+            let message = format!("{name} in place of {}", state::event_name(asked));
+            return self.fault_at("event", message, place, cl_line, None);
+        }
+        let message = format!("{name} that the CL file does not ask for");
         self.fault_at("event", message, place, None, None);
     }
 

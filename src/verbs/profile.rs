@@ -96,8 +96,8 @@ fn profile(machine: &Machine, numbers: &[StatedNumber]) -> String {
         [] => rows.row("checked", "nothing was checked at a machine"),
         checked => checked.iter().for_each(|line| rows.row("checked", line)),
     }
-    for (key, text) in &profile.unknown {
-        rows.row("not known", format_args!("{key}: {text}"));
+    for line in profile.not_known() {
+        rows.row("not known", line);
     }
     let mut table = TextTable::headed(3, ["number", "value", "from"]);
     for StatedNumber { key, value } in numbers {

@@ -314,6 +314,28 @@ fn machines_of_real_makers_are_profiled() {
     assert_eq!((count, listed), (7, 8));
 }
 
+/// A file that extends one says what was measured, and a slip in it is told.
+#[test]
+fn what_was_measured_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("ours.toml");
+    let text = "extends = \"dmu50\"\n[axis.B]\npoint = [0.01, 0, -50.02]\n[profile.sources]\n\
+                \"axis.B.point\" = \"acceptance report\"\n\"axis.Q\" = \"a slip\"\n";
+    fs::write(&file, text).unwrap();
+    let file = file.to_str().unwrap();
+    let run = post(&["profile", file]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(run.err.contains("warning[machine-profile]") && run.err.contains("`axis.Q`"));
+    let line = run.out.lines().find(|line| line.starts_with("axis.B.point")).unwrap();
+    assert!(line.contains("[0.01, 0, -50.02]") && line.ends_with("acceptance report"), "{line}");
+    for told in [run.out, post(&["check", file]).out] {
+        let unknown: Vec<&str> =
+            told.lines().filter(|line| line.starts_with("not known")).collect();
+        assert_eq!(unknown.len(), 3, "{told}");
+        assert!(unknown.iter().all(|line| !line.contains("axis.B.point")), "{told}");
+    }
+}
+
 /// A table of poses that LinuxCNC computed, the machine of the library that it must be, parameters, and the
 /// tool's length.
 type Poses = (&'static str, &'static str, &'static [(&'static str, f64)], f64);

@@ -16,6 +16,9 @@ const NAME: usize = 17;
 pub fn check(check: &Check) -> String {
     let mut rows = NamedValues::default();
     rows.row("machine", &check.machine);
+    for line in &check.not_known {
+        rows.row("not known", line);
+    }
     class(&mut rows, &check.class);
     rows.row("solved", &check.solved);
     rows.row_if("leaves the part", check.leaves.as_ref());

@@ -40,6 +40,9 @@ use crate::kinematics::NoClosedForm;
 pub struct Check {
     /// Name of the machine.
     pub machine: String,
+    /// Numbers of the file that are not those of the machine, and what to measure.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_known: Vec<String>,
     /// Length of the tool that it was derived with, mm from the gauge point.
     pub tool_length_mm: f64,
     /// Chain and class.
@@ -94,6 +97,7 @@ impl Check {
                 "numerically, from the point before; each solution verified by the forward product"
             }
             .to_owned(),
+            not_known: machine.profile.not_known(),
             leaves: leaving::told(machine),
             signs: signs::table(&probe),
             typical,

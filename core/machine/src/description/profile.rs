@@ -97,6 +97,12 @@ impl Profile {
         }
     }
 
+    /// What is to be measured, a line a key; a key whose source is said too is left out.
+    pub fn not_known(&self) -> Vec<String> {
+        let unknown = self.unknown.iter().filter(|(key, _)| !self.sources.contains_key(*key));
+        unknown.map(|(key, text)| format!("{key}: {text}")).collect()
+    }
+
     /// Keys that name none of `numbers`: slips.
     pub fn strangers(&self, numbers: &[StatedNumber]) -> Vec<&str> {
         let all = self.sources.keys().chain(self.unknown.keys()).map(String::as_str);

@@ -10,12 +10,12 @@ use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
 use super::numeric;
 use super::orientation::{Branches, LatitudeLanes, Orientation, RotarySet, angle};
-use super::planar::{self, AllowedMiss, Meeting, NextSolution, Planar, PlanarSolution};
+use super::planar::Planar;
 use super::turning_axis;
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
 /// of reach, and radians.
-const VERIFIED: f64 = 1e-9;
+pub(super) const VERIFIED: f64 = 1e-9;
 
 /// Angles that a numeric search begins at, for each rotary axis, radians.
 const SEEDS: [f64; 3] = [-2.1, 0.1, 2.2];
@@ -45,12 +45,12 @@ pub struct Freedom {
 /// How a chain is solved: prepared once a machine, tool and index position.
 #[derive(Clone, Debug)]
 pub struct Solver {
-    chain: Chain,
+    pub(super) chain: Chain,
     /// Values of the axes that are not free (indexed), mm or radians.
-    held: Joints,
-    form: SolutionMethod,
+    pub(super) held: Joints,
+    pub(super) form: SolutionMethod,
     /// How far two linear axes may miss the tip, mm.
-    tip_tolerance: f64,
+    pub(super) tip_tolerance: f64,
 }
 
 /// How fewer than three linear axes are solved: rotary axes have to place the tip as well.
@@ -87,7 +87,7 @@ fn few(chain: &Chain, freedom: &Freedom, quills: bool) -> Result<SolutionMethod,
     clippy::large_enum_variant,
     reason = "there is one a machine, and a box would cost every point"
 )]
-enum SolutionMethod {
+pub(super) enum SolutionMethod {
     Closed {
         orientation: Orientation,
         /// Free rotary axes along the tool, which turn nothing: one bit each.
@@ -349,98 +349,6 @@ impl Solver {
         tolerance: f64,
     ) -> Result<Joints, Unreachable> {
         self.search_within(pose, from, tolerance, &mut { numeric::STEPS })
-    }
-
-    /// What solves two linear axes without a search.
-    fn planar_form(&self) -> Option<&Planar> {
-        match &self.form {
-            SolutionMethod::Numeric { planar, .. } => planar.as_deref(),
-            SolutionMethod::Closed { .. } => None,
-        }
-    }
-
-    /// Two linear axes move the tip in a plane, and formulas say how rotary axes turn it: not every way of the tip can be
-    /// followed.
-    pub fn planar(&self) -> bool {
-        self.planar_form().is_some()
-    }
-
-    fn allowed(&self, axis: f64) -> AllowedMiss {
-        AllowedMiss { tip: self.tip_tolerance, axis: axis.max(VERIFIED) }
-    }
-
-    fn solutions(
-        &self,
-        planar: &Planar,
-        pose: &Pose,
-        last: &Joints,
-        tolerance: f64,
-    ) -> Result<Vec<PlanarSolution>, Unreachable> {
-        planar.solutions(&self.chain, &self.held, pose, last, self.allowed(tolerance))
-    }
-
-    /// The solution over which the way from one set of axis values to another is shortest.
-    fn in_plane(
-        &self,
-        planar: &Planar,
-        pose: &Pose,
-        [first, last]: [&Joints; 2],
-        tolerance: f64,
-    ) -> Result<Joints, Unreachable> {
-        let ways = self.solutions(planar, pose, first, tolerance)?;
-        let halfway: Joints = std::array::from_fn(|joint| (first[joint] + last[joint]) / 2.0);
-        let ways = ways.iter().map(|way| planar::unwound(&self.chain, &way.joints, &halfway));
-        let turn = |joints: &Joints| {
-            let turned = |end: &Joints| planar::turned(&self.chain, joints, end);
-            turned(first) + turned(last)
-        };
-        let shortest = ways.min_by(|a, b| turn(a).total_cmp(&turn(b)));
-        shortest.ok_or(Unreachable::Linear)
-    }
-
-    /// For a chain without a closed form: the solution between two sets of axis values, over which the way from the first
-    /// to the last is shortest; of a numeric search the one next to the first.
-    ///
-    /// # Errors
-    /// By how much the nearest pose misses.
-    pub fn search_between(
-        &self,
-        pose: &Pose,
-        ends: [&Joints; 2],
-        tolerance: f64,
-    ) -> Result<Joints, Unreachable> {
-        match self.planar_form() {
-            Some(planar) => self.in_plane(planar, pose, ends, tolerance),
-            None => self.search(pose, ends[0], tolerance),
-        }
-    }
-
-    /// For a chain without a closed form: the solutions that a cut from the first pose, where it stands at `from`, can go
-    /// on to at the second, the one that turns least first; of a numeric search the one next to `from`.
-    ///
-    /// # Errors
-    /// By how much the nearest pose misses.
-    pub fn next(
-        &self,
-        poses: [&Pose; 2],
-        from: &Joints,
-        tolerance: f64,
-    ) -> Result<Vec<NextSolution>, Unreachable> {
-        match self.planar_form() {
-            Some(planar) => {
-                planar.next(&self.chain, &self.held, poses, from, self.allowed(tolerance))
-            }
-            None => {
-                let joints = self.search(poses[1], from, tolerance)?;
-                Ok(vec![NextSolution { joints, sure: true }])
-            }
-        }
-    }
-
-    /// Where on a straight way of the tip (mm, part frame) two solutions come nearest to one another, of a chain whose two
-    /// linear axes a rotary one carries; the other rotary joints stand as in `joints`.
-    pub fn meeting(&self, way: [Vector3<f64>; 2], joints: &Joints) -> Option<Meeting> {
-        self.planar_form()?.meeting(&self.chain, way, joints)
     }
 
     /// [`Solver::search`] in no more steps than `left`, from which it takes those that it needed.

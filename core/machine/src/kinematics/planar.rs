@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 
 use super::chain::{Chain, Joint, Joints, Pose, Turns, turn};
 use super::fault::{POLE, Unreachable};
+use super::inverse::{SolutionMethod, Solver, VERIFIED};
 use super::linear::FLAT;
 use super::numeric;
 use super::orientation::{Orientation, RotarySet, angle};
@@ -45,8 +46,9 @@ pub(super) struct AllowedMiss {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlanarSolution {
     pub(super) joints: Joints,
-    /// 1 or -1: on which side of where the ways of the carrier meet; 0 on it, and where the carrier points the tool.
-    pub(super) side: f64,
+    /// 1 or -1: on which side of where the ways of the carrier meet; 0 where they do. None where the carrier points the
+    /// tool.
+    side: Option<f64>,
 }
 
 /// How a cut can go on to a pose.
@@ -54,6 +56,9 @@ pub(super) struct PlanarSolution {
 pub struct NextSolution {
     /// Axis values, each angle on the turn next to where the cut comes from.
     pub joints: Joints,
+    /// Its place among the solutions of [`Solver::inverse`]; where both ways of the carrier are one, that of where the cut
+    /// comes from.
+    pub branch: u8,
     /// The way there stays on one side of where two ways meet; else it has to be tried.
     pub sure: bool,
 }
@@ -141,7 +146,7 @@ impl Planar {
                 Some(carrier) => {
                     self.carried(chain, pose, &mut set.joints, (carrier, last), allowed)
                 }
-                None => Ok(vec![PlanarSolution { joints: set.joints, side: 0.0 }]),
+                None => Ok(vec![PlanarSolution { joints: set.joints, side: None }]),
             };
             let placed = ways.map(|ways| {
                 for mut way in ways {
@@ -184,7 +189,7 @@ impl Planar {
             let mut joints = *joints;
             joints[carrier] = libm::remainder(angle, TAU);
             self.orientation.follow(pose, &mut joints);
-            PlanarSolution { joints, side }
+            PlanarSolution { joints, side: Some(side) }
         };
         let square = at.square();
         let close = POLE.max(MEETS * allowed.tip);
@@ -279,14 +284,20 @@ impl Planar {
         let side = self.side(chain, from);
         let meeting = self.meeting(chain, [start.tip, end.tip], from);
         let apart = meeting.is_none_or(|meeting| meeting.gap > allowed.tip);
-        let carried = solutions.iter().any(|solution| solution.side != 0.0);
+        let carried = solutions.iter().any(|way| way.side.is_some_and(|side| side != 0.0));
         let alone = solutions.len() == 1 && (apart || !carried);
-        let goes_on = |way: &PlanarSolution| !apart || !carried || way.side == side;
+        let goes_on = |way: &PlanarSolution| !apart || !carried || way.side == Some(side);
+        let branch = |place: usize, way: &PlanarSolution| match way.side {
+            None => place as u8,
+            Some(own) => u8::from(if own == 0.0 { side } else { own } > 0.0),
+        };
         let mut next: Vec<NextSolution> = solutions
             .iter()
-            .filter(|way| goes_on(way))
-            .map(|way| NextSolution {
+            .enumerate()
+            .filter(|(_, way)| goes_on(way))
+            .map(|(place, way)| NextSolution {
                 joints: unwound(chain, &way.joints, from),
+                branch: branch(place, way),
                 sure: alone || (apart && carried),
             })
             .collect();
@@ -323,6 +334,100 @@ impl Plane {
     }
 }
 
+impl Solver {
+    /// What solves two linear axes without a search.
+    pub(super) fn planar_form(&self) -> Option<&Planar> {
+        match &self.form {
+            SolutionMethod::Numeric { planar, .. } => planar.as_deref(),
+            SolutionMethod::Closed { .. } => None,
+        }
+    }
+
+    /// Two linear axes move the tip in a plane, and formulas say how rotary axes turn it: not every way of the tip can be
+    /// followed.
+    pub fn planar(&self) -> bool {
+        self.planar_form().is_some()
+    }
+
+    fn allowed(&self, axis: f64) -> AllowedMiss {
+        AllowedMiss { tip: self.tip_tolerance, axis: axis.max(VERIFIED) }
+    }
+
+    pub(super) fn solutions(
+        &self,
+        planar: &Planar,
+        pose: &Pose,
+        last: &Joints,
+        tolerance: f64,
+    ) -> Result<Vec<PlanarSolution>, Unreachable> {
+        planar.solutions(&self.chain, &self.held, pose, last, self.allowed(tolerance))
+    }
+
+    /// The solution over which the way from one set of axis values to another is shortest.
+    pub(super) fn in_plane(
+        &self,
+        planar: &Planar,
+        pose: &Pose,
+        [first, last]: [&Joints; 2],
+        tolerance: f64,
+    ) -> Result<Joints, Unreachable> {
+        let ways = self.solutions(planar, pose, first, tolerance)?;
+        let halfway: Joints = std::array::from_fn(|joint| (first[joint] + last[joint]) / 2.0);
+        let ways = ways.iter().map(|way| unwound(&self.chain, &way.joints, &halfway));
+        let turn = |joints: &Joints| {
+            let turned = |end: &Joints| turned(&self.chain, joints, end);
+            turned(first) + turned(last)
+        };
+        let shortest = ways.min_by(|a, b| turn(a).total_cmp(&turn(b)));
+        shortest.ok_or(Unreachable::Linear)
+    }
+
+    /// For a chain without a closed form: the solution between two sets of axis values, over which the way from the first
+    /// to the last is shortest; of a numeric search the one next to the first.
+    ///
+    /// # Errors
+    /// By how much the nearest pose misses.
+    pub fn search_between(
+        &self,
+        pose: &Pose,
+        ends: [&Joints; 2],
+        tolerance: f64,
+    ) -> Result<Joints, Unreachable> {
+        match self.planar_form() {
+            Some(planar) => self.in_plane(planar, pose, ends, tolerance),
+            None => self.search(pose, ends[0], tolerance),
+        }
+    }
+
+    /// For a chain without a closed form: the solutions that a cut from the first pose, where it stands at `from`, can go
+    /// on to at the second, the one that turns least first; of a numeric search the one next to `from`.
+    ///
+    /// # Errors
+    /// By how much the nearest pose misses.
+    pub fn next(
+        &self,
+        poses: [&Pose; 2],
+        from: &Joints,
+        tolerance: f64,
+    ) -> Result<Vec<NextSolution>, Unreachable> {
+        match self.planar_form() {
+            Some(planar) => {
+                planar.next(&self.chain, &self.held, poses, from, self.allowed(tolerance))
+            }
+            None => {
+                let joints = self.search(poses[1], from, tolerance)?;
+                Ok(vec![NextSolution { joints, branch: 0, sure: true }])
+            }
+        }
+    }
+
+    /// Where on a straight way of the tip (mm, part frame) two solutions come nearest to one another, of a chain whose two
+    /// linear axes a rotary one carries; the other rotary joints stand as in `joints`.
+    pub fn meeting(&self, way: [Vector3<f64>; 2], joints: &Joints) -> Option<Meeting> {
+        self.planar_form()?.meeting(&self.chain, way, joints)
+    }
+}
+
 /// By how much more than is allowed the axes miss a pose; none where they do not.
 fn missed(
     chain: &Chain,
@@ -342,7 +447,7 @@ fn missed(
 }
 
 /// Each angle on the turn next to that of `near`.
-pub(super) fn unwound(chain: &Chain, joints: &Joints, near: &Joints) -> Joints {
+fn unwound(chain: &Chain, joints: &Joints, near: &Joints) -> Joints {
     let mut joints = *joints;
     for (index, _) in chain.joints().iter().enumerate().filter(|(_, joint)| joint.rotary) {
         joints[index] += TAU * libm::rint((near[index] - joints[index]) / TAU);
@@ -351,7 +456,7 @@ pub(super) fn unwound(chain: &Chain, joints: &Joints, near: &Joints) -> Joints {
 }
 
 /// The sum of all turns between two sets of axis values, radians.
-pub(super) fn turned(chain: &Chain, joints: &Joints, other: &Joints) -> f64 {
+fn turned(chain: &Chain, joints: &Joints, other: &Joints) -> f64 {
     let axes = chain.joints().iter().enumerate().filter(|(_, joint)| joint.rotary);
     axes.map(|(index, _)| libm::fabs(joints[index] - other[index])).sum()
 }

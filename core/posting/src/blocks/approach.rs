@@ -83,7 +83,11 @@ impl BlockStage<'_> {
 
     /// Moves from wherever the tool stands to `node`.
     fn come(&self, leg: &PathLeg<'_>, node: &PathNode, kind: BlockKind, out: &mut BlockSink<'_>) {
-        let block = self.block(leg, node, DeviationBound::default());
+        // Two linear axes may stand beside the point.
+        let missed = DeviationBound { tip: node.tip_error, axis: node.axis_error };
+        let planar = leg.placer.solver().planar();
+        let bound = if planar { missed } else { DeviationBound::default() };
+        let block = self.block(leg, node, bound);
         out.push(StreamItem::Point(MotionBlock {
             kind,
             // The way is not known: the feed is that of a millimetre.

@@ -444,15 +444,6 @@ impl<'a> BlockStage<'a> {
         last
     }
 
-    /// The tool leaves the part standing otherwise than it is to stand then: it turns less so, or stays on its side of the
-    /// centre line.
-    fn leaves_as(&self, placer: &Placer, [from, stay, to]: [&PathNode; 3]) -> bool {
-        match placer.solver().planar() {
-            true => self.turn_between(stay, to) > TURN,
-            false => self.turn_between(from, stay) + TURN < self.turn_between(from, to),
-        }
-    }
-
     /// The tool axis in the machine frame, as the head holds it.
     fn in_machine(&self, placer: &Placer, node: &PathNode) -> Vector3<f64> {
         let mut joints = node.trace.joints;
@@ -513,12 +504,6 @@ impl<'a> BlockStage<'a> {
             }
             None => self.split(&[*leg], &[*last, *node], out),
         }
-    }
-
-    /// Off the part two linear axes and a rotary one go straight to where they are wanted: the straight way of the tip
-    /// cannot be reached in general, and on the way out of the part it is asked for all the same.
-    fn goes_along_axes(&self, leg: &PathLeg<'_>) -> bool {
-        leg.loose && !self.on_part && leg.placer.solver().planar()
     }
 
     /// Legs, one after the other, that need points or can do without some of their own.

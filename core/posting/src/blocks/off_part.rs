@@ -4,7 +4,7 @@ use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::orientation::angle;
 
-use super::{BlockReason, BlockSink, BlockStage, PathLeg};
+use super::{BlockReason, BlockSink, BlockStage, PathLeg, TURN};
 use crate::accuracy::{PathNode, Placer};
 use crate::configuration::pose;
 use crate::program::{MoveFeed, StraightMove};
@@ -29,6 +29,21 @@ const SHORT: f64 = 1e-3;
 const LEAVE: [f64; 5] = [100.0, 50.0, 25.0, 12.0, 6.0];
 
 impl BlockStage<'_> {
+    /// Off the part two linear axes and a rotary one go straight to where they are wanted: the straight way of the tip
+    /// cannot be reached in general, and on the way out of the part it is asked for all the same.
+    pub(super) fn goes_along_axes(&self, leg: &PathLeg<'_>) -> bool {
+        leg.loose && !self.on_part && leg.placer.solver().planar()
+    }
+
+    /// The tool leaves the part standing otherwise than it is to stand then: it turns less so, or stays on its side of the
+    /// centre line.
+    pub(super) fn leaves_as(&self, placer: &Placer, [from, stay, to]: [&PathNode; 3]) -> bool {
+        match placer.solver().planar() {
+            true => self.turn_between(stay, to) > TURN,
+            false => self.turn_between(from, stay) + TURN < self.turn_between(from, to),
+        }
+    }
+
     /// The tool is about to be retracted: from where it stands, if it stands anywhere.
     pub(super) fn depart(&mut self, line: u64, out: &mut BlockSink<'_>) {
         if let (Some(placer), Some(last)) = (self.placer.clone(), self.last.take()) {

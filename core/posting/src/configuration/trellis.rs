@@ -735,7 +735,7 @@ impl Trellis {
             let tolerance = self.axes.axis_tolerance;
             let poses = [&from_pose, &target];
             let next = placer.solver().next(poses, &state.joints, tolerance).unwrap_or_default();
-            for (side, next) in next.into_iter().enumerate() {
+            for next in next {
                 let mut joints = next.joints;
                 let from = CutEnd { pose: &from_pose, joints: &state.joints };
                 if self.axes.reaches(&joints)
@@ -748,7 +748,7 @@ impl Trellis {
                             CutEnd { pose: &target, joints: &joints },
                         ))
                 {
-                    let new = self.after(index, joints, side as u8);
+                    let new = self.after(index, joints, next.branch);
                     self.keep(first, new);
                 }
             }

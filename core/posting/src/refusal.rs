@@ -116,7 +116,7 @@ pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic
         PlacementError::Unreachable(Unreachable::Plane { miss }) => Diagnostic::error(
             "out-of-reach",
             format!(
-                "the two linear axes of {} bring the tip no nearer than {miss:.4} mm to this point with the tool pointing this way, {} mm is allowed",
+                "the two linear axes of {} bring the tip no nearer than {miss:.4} mm to this point, or to the straight way there, with the tool pointing so; {} mm is allowed",
                 machine.name,
                 Short(machine.accuracy.tolerance)
             ),

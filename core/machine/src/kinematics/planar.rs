@@ -68,8 +68,10 @@ pub struct NextSolution {
 pub struct Meeting {
     /// Share of the way, 0 to 1.
     pub share: f64,
-    /// Distance of the tip from where they meet, mm.
+    /// Distance of the tip from where they meet, mm; zero where the plane passes by it.
     pub gap: f64,
+    /// Distance at which the plane passes by the tip, mm; zero where it does not.
+    pub miss: f64,
     /// The joint that can be turned there while the tip stands.
     pub joint: usize,
 }
@@ -265,7 +267,10 @@ impl Planar {
             e: from.e + e * share,
         };
         let square = at(share).square().min(from.square()).min(to.square());
-        Some(Meeting { share, gap: square.max(0.0).sqrt(), joint: carrier })
+        let nearest = at(share);
+        let miss = libm::fabs(nearest.e) - libm::hypot(nearest.a, nearest.b);
+        let gap = square.max(0.0).sqrt();
+        Some(Meeting { share, gap, miss: miss.max(0.0), joint: carrier })
     }
 
     /// The solutions that a cut from `from`, where it stands at the first pose, can go on to at the second.

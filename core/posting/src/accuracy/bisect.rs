@@ -154,7 +154,8 @@ fn on_the_spot(piece: &NodeMove<'_>) -> Option<Result<Vec<PathNode>, PlacementEr
     let (first, last) = (&from.trace.joints, &to.trace.joints);
     let meeting = placer.solver().meeting([from.target.tip, to.target.tip], first)?;
     let turn = libm::fabs(last[meeting.joint] - first[meeting.joint]);
-    if turn < TURNS || meeting.gap > CLOSE * piece.tolerances.tip || from.t == to.t {
+    let off = meeting.gap.max(meeting.miss);
+    if turn < TURNS || off > CLOSE * piece.tolerances.tip || from.t == to.t {
         return None;
     }
     let t = from.t * (1.0 - meeting.share) + to.t * meeting.share;

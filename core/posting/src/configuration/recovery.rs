@@ -244,6 +244,12 @@ impl Route<'_> {
         let Some(from) = self.trellis.best().map(|index| self.trellis.states[index]) else {
             return self.over_travel(found);
         };
+        let start = self.trellis.layers.last().map_or(target.tip, |last| last.motion.tip);
+        let meeting = placer.solver().meeting([start, target.tip], &from.joints);
+        if let Some(meeting) = meeting.filter(|at| at.miss > self.machine.accuracy.tolerance) {
+            let refused = PlacementError::Unreachable(Unreachable::Plane { miss: meeting.miss });
+            return refusal::refused(self.machine, &refused).boxed();
+        }
         let mut stands = Vec::new();
         let axes = &self.trellis.axes;
         let solved = axes.stands(placer.solver(), &target, &from.joints, &both, &mut stands);

@@ -114,7 +114,8 @@ impl CutChecker for CutTrial<'_> {
         if planned.whole().is_some() {
             return true;
         }
-        if !self.strict {
+        // What two linear axes miss on the wrong side of the centre line is the tip alone.
+        if !self.strict && !placer.solver().planar() {
             planned.tolerances.tip = f64::INFINITY;
         }
         self.linearise.comes_through(&planned)

@@ -13,6 +13,7 @@ mod ceilings;
 mod changes;
 mod check;
 mod check_posts;
+mod clearance;
 mod command;
 mod common;
 mod compensate;

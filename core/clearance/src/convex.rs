@@ -144,6 +144,14 @@ impl Convex {
         (centre, far.fold(0.0, f64::max) + self.round)
     }
 
+    /// Its least and largest coordinates, mm.
+    pub fn extents(&self) -> [Vector3<f64>; 2] {
+        [-1.0, 1.0].map(|sense| {
+            let reach = |axis| self.core.support(Vector3::ith(axis, sense))[axis];
+            Vector3::from_fn(|axis, _| reach(axis) + sense * self.round)
+        })
+    }
+
     /// All numbers of it are finite and closer than [`crate::FARTHEST`].
     pub fn is_near(&self) -> bool {
         let (centre, radius) = self.sphere();

@@ -15,6 +15,9 @@ use crate::shape::{Below, Shape};
 /// Pieces that are no nearer than this share of the nearest found are not looked at.
 const CLOSE: f64 = 0.98;
 
+/// Steps to a point of two pieces that overlap, for who looks at it.
+const STEPS: usize = 40;
+
 /// Where a link stands in the frame of another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
@@ -57,6 +60,15 @@ pub struct Apart {
     pub point: Vector3<f64>,
     /// The pieces that are nearest.
     pub nearest: [usize; 2],
+    /// Across the planes between them, from the first to the second, frame of the first; zero where there are none.
+    pub along: Vector3<f64>,
+}
+
+impl Apart {
+    /// Nothing is known but that they may touch.
+    pub(crate) fn touching(point: Vector3<f64>, nearest: [usize; 2]) -> Self {
+        Self { at_least: 0.0, at_most: 0.0, point, nearest, along: Vector3::zeros() }
+    }
 }
 
 /// Two convex pieces, in one frame.
@@ -70,8 +82,7 @@ pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
     let found = closest_points(&pose, &one.core, &other.core, f64::MAX, true, &mut simplex);
     let of = |vector: Vector| Vector3::new(vector.x, vector.y, vector.z);
     let round = one.round + other.round;
-    let mut apart =
-        Apart { at_least: 0.0, at_most: 0.0, point: (from + to) * 0.5, nearest: [0; 2] };
+    let mut apart = Apart::touching((from + to) * 0.5, [0; 2]);
     let along = match found {
         GJKResult::ClosestPoints(first, last, along) => {
             let (first, last) = (of(first), of(last));
@@ -79,7 +90,10 @@ pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
             apart.at_most = ((last - first).norm() - round).max(0.0);
             [last - first, of(along)]
         }
-        GJKResult::Intersection => return apart,
+        GJKResult::Intersection => {
+            apart.point = common(one, other);
+            return apart;
+        }
         // The search has not come to an end: what a direction proves still holds.
         GJKResult::NoIntersection(along) | GJKResult::Proximity(along) => {
             apart.at_most = ((to - from).norm() - round).max(0.0);
@@ -90,25 +104,42 @@ pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
         let Some(along) = along.try_normalize(1e-300) else { continue };
         let near = along.dot(&other.core.support(-along));
         let far = along.dot(&one.core.support(along));
-        apart.at_least = apart.at_least.max(near - far - round);
+        if near - far - round > apart.at_least {
+            (apart.at_least, apart.along) = (near - far - round, along);
+        }
     }
     // Rounding: what is proven is no more than what was found.
     apart.at_least = (apart.at_least.min(apart.at_most) - ALLOWANCE).max(0.0);
     apart
 }
 
+/// A point that is nearly in both of two pieces that overlap: from the middle of each towards the other, by the points of
+/// both that are farthest on the way (Frank, Wolfe 1956).
+fn common(one: &Convex, other: &Convex) -> Vector3<f64> {
+    let (mut here, mut there) = (one.core.centre(), other.core.centre());
+    for _ in 0..STEPS {
+        let off = there - here;
+        let ends = [one.core.support(off), other.core.support(-off)];
+        let change = (ends[1] - there) - (ends[0] - here);
+        let length = change.norm_squared();
+        if length <= 0.0 {
+            break;
+        }
+        let share = (-off.dot(&change) / length).clamp(0.0, 1.0);
+        here += (ends[0] - here) * share;
+        there += (ends[1] - there) * share;
+    }
+    (here + there) * 0.5
+}
+
 /// Two shapes, the second placed in the frame of the first; `guess` are pieces that may be the nearest. What a mesh encloses
 /// is not looked at.
 pub fn of_shapes(one: &Shape, other: &Shape, at: &Placement, guess: [usize; 2]) -> Apart {
-    let mut search = Search { one, other, at, best: None, passed: f64::INFINITY };
+    let passed = f64::INFINITY;
+    let mut search = Search { one, other, at, best: None, passed, planes: None };
     search.pieces(guess);
     search.nodes(0, 0);
-    let mut apart = search.best.unwrap_or(Apart {
-        at_least: 0.0,
-        at_most: 0.0,
-        point: Vector3::zeros(),
-        nearest: guess,
-    });
+    let mut apart = search.best.unwrap_or(Apart::touching(Vector3::zeros(), guess));
     apart.at_least = apart.at_least.min(search.passed).max(0.0);
     apart
 }
@@ -128,6 +159,19 @@ struct Search<'a> {
     best: Option<Apart>,
     /// The least that is proven of what was not looked at, mm.
     passed: f64,
+    /// Across the planes between the nearest pieces so far: others are likely to be apart along it too.
+    planes: Option<Planes>,
+}
+
+/// A direction across which two shapes are held apart.
+#[derive(Clone, Copy)]
+struct Planes {
+    /// Unit vector, frame of the first.
+    along: Vector3<f64>,
+    /// The same in the frame of the second.
+    beside: Vector3<f64>,
+    /// How far the frame of the second is along it, mm.
+    shift: f64,
 }
 
 impl Search<'_> {
@@ -142,6 +186,11 @@ impl Search<'_> {
         };
         let found = of_convex(one, &other.placed(self.at));
         let found = Apart { nearest: [first, last], ..found };
+        if found.at_most < self.at_most() && found.along != Vector3::zeros() {
+            let along = found.along;
+            let beside = self.at.rotation.tr_mul(&along);
+            self.planes = Some(Planes { along, beside, shift: along.dot(&self.at.shift) });
+        }
         self.best = Some(match self.best {
             Some(best) => {
                 let at_least = best.at_least.min(found.at_least);
@@ -155,7 +204,13 @@ impl Search<'_> {
     /// No part of one node is nearer than this to one of the other, mm.
     fn apart(&self, one: usize, other: usize) -> f64 {
         let (one, other) = (&self.one.nodes[one], &self.other.nodes[other]);
-        (self.at.point(other.centre) - one.centre).norm() - one.radius - other.radius - ALLOWANCE
+        let spheres = (self.at.point(other.centre) - one.centre).norm() - one.radius - other.radius;
+        let boxes = self.planes.map_or(f64::NEG_INFINITY, |planes| {
+            let Planes { along, beside, shift } = planes;
+            let far = along.dot(&one.centre) + along.abs().dot(&one.half);
+            shift + beside.dot(&other.centre) - beside.abs().dot(&other.half) - far
+        });
+        spheres.max(boxes) - ALLOWANCE
     }
 
     fn nodes(&mut self, one: usize, other: usize) {
@@ -192,9 +247,16 @@ impl Search<'_> {
 
     /// Two pieces, unless their spheres are far enough apart.
     fn pieces_within(&mut self, [first, last]: [usize; 2]) {
-        let (centre, radius) = self.one.pieces[first].sphere();
-        let (beside, reach) = self.other.pieces[last].sphere();
-        let bound = (self.at.point(beside) - centre).norm() - radius - reach - ALLOWANCE;
+        let (centre, radius) = self.one.spheres[first];
+        let (beside, reach) = self.other.spheres[last];
+        let mut bound = (self.at.point(beside) - centre).norm() - radius - reach;
+        if let Some(Planes { along, beside, shift }) = self.planes {
+            let (one, other) = (&self.one.pieces[first], &self.other.pieces[last]);
+            let far = along.dot(&one.core.support(along)) + one.round;
+            let near = shift + beside.dot(&other.core.support(-beside)) - other.round;
+            bound = bound.max(near - far);
+        }
+        bound -= ALLOWANCE;
         if bound >= CLOSE * self.at_most() || self.at_most() <= 0.0 {
             self.passed = self.passed.min(bound);
             return;

@@ -78,7 +78,8 @@ impl View {
     ///
     /// Where the axes go linearly, the middle strays from the line between its ends by no more than an eighth of the bound
     /// on its second derivative, and no point of that line is farther away than an end of it. A point of the body goes
-    /// besides as far as the turn of its frame takes it about the middle; turns of several axes add up at most.
+    /// besides as far as the turn of its frame takes it about the middle; turns of several axes add up at most. Of axes that
+    /// go for themselves it says nothing.
     pub fn reach(&self, known: &Joints, centre: Vector3<f64>, piece: &Piece) -> f64 {
         let ends = piece.ends.each_ref().map(|joints| self.of(joints));
         let known = self.of(known);
@@ -86,9 +87,6 @@ impl View {
             let [from, to] = [0, 1].map(|end: usize| libm::fabs(ends[end][place] - known[place]));
             from.max(to)
         };
-        if piece.independent {
-            return self.levers(&known, far);
-        }
         let joints = self.chain.joints();
         let turned: f64 = (0..joints.len()).filter(|place| joints[*place].rotary).map(far).sum();
         let [from, to] = ends.each_ref().map(|ends| (self.chain.forward(ends).tip - centre).norm());
@@ -96,21 +94,27 @@ impl View {
         from.max(to) + bend / 8.0 + piece.stray + chord(turned) * self.radius
     }
 
-    /// As [`View::reach`], wherever each axis stands within what `far` has of it, mm or radians from `known`: axis by axis
-    /// from the body on, each turns no point farther than its own distance from the line, which those behind it may have
-    /// lengthened.
-    fn levers(&self, known: &Joints, far: impl Fn(usize) -> f64) -> f64 {
+    /// How far any point of the body is from the line of each axis where the axes stand on `known`, mm, at most.
+    pub fn levers(&self, known: &Joints) -> Joints {
+        let known = self.of(known);
         let mut trace =
-            Trace { joints: *known, turns: self.chain.turns(known), ..Trace::default() };
+            Trace { joints: known, turns: self.chain.turns(&known), ..Trace::default() };
         self.chain.trace(&mut trace);
-        let mut moved = 0.0;
+        trace.tip_rates.map(|rate| rate.norm() + self.radius)
+    }
+
+    /// As [`View::reach`], from `levers` alone and without a sine, wherever each axis stands between its values at the ends
+    /// of `piece`: axis by axis from the body on, each turns no point farther than its own distance from the line, which
+    /// those behind it may have lengthened.
+    pub fn reach_by_levers(&self, known: &Joints, levers: &Joints, piece: &Piece) -> f64 {
+        let mut moved = piece.stray;
         for (place, joint) in self.chain.joints().iter().enumerate().rev() {
+            let axis = self.axes[place];
+            let [from, to] = piece.ends.each_ref().map(|ends| libm::fabs(ends[axis] - known[axis]));
+            let far = from.max(to);
             moved += match joint.rotary {
-                true => {
-                    let lever = trace.tip_rates[place].norm() + self.radius + moved;
-                    chord(far(place)) * lever
-                }
-                false => far(place),
+                true => far.min(2.0) * (levers[place] + moved),
+                false => far,
             };
         }
         moved
@@ -118,14 +122,12 @@ impl View {
 
     /// The axis of the machine whose way over `piece` moves the body most.
     pub fn widest(&self, piece: &Piece) -> Option<(usize, f64)> {
-        let own = self.of(&piece.middle);
-        let mut trace = Trace { joints: own, turns: self.chain.turns(&own), ..Trace::default() };
-        self.chain.trace(&mut trace);
+        let levers = self.levers(&piece.middle);
         let way = |place: usize| {
             let axis = self.axes[place];
             let way = libm::fabs(piece.ends[1][axis] - piece.ends[0][axis]);
             match self.chain.joints()[place].rotary {
-                true => way * (trace.tip_rates[place].norm() + self.radius),
+                true => way * levers[place],
                 false => way,
             }
         };

@@ -76,7 +76,7 @@ impl Way<'_> {
         let ends = self.ends.map(|stance| stance.joints);
         let moving = (0..MAX_AXES).filter(|place| ends[0][*place] != ends[1][*place]).count();
         // One axis alone comes by all that is between its ends, whenever.
-        if self.independent && moving > 1 && *self.interpolation == Interpolation::Axes {
+        if self.independent && moving > 1 {
             let middle = middle(&ends);
             return Some(Piece { ends, middle, independent: true, ..Piece::at(&middle) });
         }
@@ -105,7 +105,8 @@ impl Way<'_> {
         }
         let curved = self.curved(share)?;
         let reach = self.solver.linear_reach();
-        let mut stray = if curved > 0.0 { reach * curved } else { 0.0 };
+        // What is no number is told from zero: it proves nothing.
+        let mut stray = if curved == 0.0 { 0.0 } else { reach * curved };
         if turning {
             let tip = self.interpolation.curve().at(self.ends.map(|end| end.pose.tip), share[1]);
             stray += TcpBlock::bend_by_arms(self.solver, [&from, &to], tip) / 8.0;

@@ -121,6 +121,8 @@ pub struct PairResult {
 #[derive(Clone, Debug)]
 struct Pair {
     views: [View; 2],
+    /// Which view is that of the smaller body.
+    smaller: usize,
     known: Option<Known>,
     guess: [usize; 2],
     result: PairResult,
@@ -132,6 +134,8 @@ struct Known {
     joints: Joints,
     /// The middle of each body as the other sees it there.
     centres: [Vector3<f64>; 2],
+    /// How far any point of the smaller body is from the axes there, mm.
+    levers: Joints,
     at_least: f64,
 }
 
@@ -256,7 +260,14 @@ impl Pair {
             fault: None,
             faults: 0,
         };
-        Self { views: [view(one, other), view(other, one)], known: None, guess: [0; 2], result }
+        let smaller = usize::from(one.shape.sphere().1 < other.shape.sphere().1);
+        Self {
+            views: [view(one, other), view(other, one)],
+            smaller,
+            known: None,
+            guess: [0; 2],
+            result,
+        }
     }
 
     /// How far they are apart; `fresh`: what meshes enclose is looked at too.
@@ -264,8 +275,8 @@ impl Pair {
         let [one, other] = self.result.bodies.map(|place| &bodies[place].shape);
         let at = self.views[0].placement(joints);
         if !at.shift.iter().chain(&at.rotation).all(|value| value.is_finite()) {
-            let (point, nearest) = (Vector3::zeros(), self.guess);
-            return Apart { at_least: 0.0, at_most: f64::INFINITY, point, nearest };
+            let unknown = Apart::touching(Vector3::zeros(), self.guess);
+            return Apart { at_most: f64::INFINITY, ..unknown };
         }
         let mut apart = distance::of_shapes(one, other, &at, self.guess);
         self.guess = apart.nearest;
@@ -275,11 +286,27 @@ impl Pair {
         apart
     }
 
-    /// They come nearer to one another by no more than this on a piece, mm, from where they stand at `known`.
-    fn reach(&self, known: &Known, piece: &Piece) -> f64 {
-        let [one, other] = [0, 1]
-            .map(|view: usize| self.views[view].reach(&known.joints, known.centres[view], piece));
-        one.min(other)
+    /// What is known where the axes stand on `joints`.
+    fn knows(&self, joints: &Joints, at_least: f64) -> Known {
+        let centres = [0, 1].map(|view: usize| self.views[view].centre(joints));
+        let levers = self.views[self.smaller].levers(joints);
+        Known { joints: *joints, centres, levers, at_least }
+    }
+
+    /// They come nearer to one another by no more than this on a piece, mm, from where they stand at `known`: the least of
+    /// several bounds, of which the dearer ones are looked at only if the others are more than `enough`.
+    fn reach(&self, known: &Known, piece: &Piece, enough: f64) -> f64 {
+        let mut least =
+            self.views[self.smaller].reach_by_levers(&known.joints, &known.levers, piece);
+        // A turn takes the points of the smaller body less far.
+        for view in [self.smaller, 1 - self.smaller] {
+            if least <= enough || piece.independent {
+                break;
+            }
+            let reach = self.views[view].reach(&known.joints, known.centres[view], piece);
+            least = least.min(reach);
+        }
+        least
     }
 
     /// Proves a motion; how many distances were computed.
@@ -314,9 +341,8 @@ impl Pair {
                 self.refuse(trial, verdict, &joints, Some(&apart));
                 return computed;
             }
-            let centres = [0, 1].map(|view: usize| self.views[view].centre(&joints));
-            let known = Known { joints, centres, at_least: apart.at_least };
-            let reach = self.reach(&known, &piece);
+            let known = self.knows(&joints, apart.at_least);
+            let reach = self.reach(&known, &piece, 0.0);
             self.known = Some(known);
             if let Some(left) = self.left(trial, &piece) {
                 clear_by = clear_by.min(left);
@@ -345,9 +371,9 @@ impl Pair {
     /// approach by much.
     fn left(&self, trial: &Trial<'_>, piece: &Piece) -> Option<f64> {
         let known = self.known.as_ref()?;
-        let left = known.at_least - self.reach(known, piece);
-        let nearest = CLOSE * self.result.nearest.0 - trial.within;
-        (left >= trial.keep && left >= nearest).then_some(left)
+        let least = trial.keep.max(CLOSE * self.result.nearest.0 - trial.within);
+        let left = known.at_least - self.reach(known, piece, known.at_least - least);
+        (left >= least).then_some(left)
     }
 
     fn refuse(

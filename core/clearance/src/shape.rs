@@ -14,6 +14,8 @@ const LEAF: usize = 4;
 #[derive(Clone, Debug)]
 pub struct Shape {
     pub(crate) pieces: Vec<Convex>,
+    /// A sphere around each piece: centre and radius, mm.
+    pub(crate) spheres: Vec<(Vector3<f64>, f64)>,
     pub(crate) nodes: Vec<Node>,
     pub(crate) shells: Vec<Shell>,
     faults: MeshFaults,
@@ -24,6 +26,8 @@ pub struct Shape {
 pub(crate) struct Node {
     pub centre: Vector3<f64>,
     pub radius: f64,
+    /// Half the box around them, along the frame's axes, about the same middle.
+    pub half: Vector3<f64>,
     /// Of a leaf the first piece and how many; of others the two nodes below.
     pub below: Below,
 }
@@ -74,7 +78,8 @@ impl Shape {
         }
         let mut nodes = Vec::new();
         grow(&mut pieces, 0, &mut nodes);
-        Some(Self { pieces, nodes, shells, faults })
+        let spheres = pieces.iter().map(Convex::sphere).collect();
+        Some(Self { pieces, spheres, nodes, shells, faults })
     }
 
     /// A sphere that holds all of it: centre and radius, mm.
@@ -120,16 +125,16 @@ pub fn turned_pieces(
 fn grow(pieces: &mut [Convex], first: usize, nodes: &mut Vec<Node>) -> usize {
     let spheres: Vec<_> = pieces.iter().map(Convex::sphere).collect();
     let infinite = Vector3::repeat(f64::INFINITY);
-    let (low, high) =
-        spheres.iter().fold((infinite, -infinite), |(low, high), (centre, radius)| {
-            let reach = Vector3::repeat(*radius);
-            (low.inf(&(centre - reach)), high.sup(&(centre + reach)))
-        });
+    let (low, high) = pieces.iter().fold((infinite, -infinite), |(low, high), piece| {
+        let [least, most] = piece.extents();
+        (low.inf(&least), high.sup(&most))
+    });
     let centre = (low + high) * 0.5;
     let radius = spheres.iter().map(|(at, radius)| (at - centre).norm() + radius);
     let radius = radius.fold(0.0, f64::max) + crate::ALLOWANCE;
     let place = nodes.len();
-    nodes.push(Node { centre, radius, below: Below::Pieces(first, pieces.len()) });
+    let half = (high - low) * 0.5;
+    nodes.push(Node { centre, radius, half, below: Below::Pieces(first, pieces.len()) });
     if pieces.len() > LEAF {
         let axis = (high - low).imax();
         let middle = pieces.len() / 2;

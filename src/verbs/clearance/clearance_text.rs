@@ -15,7 +15,6 @@ pub fn text(found: &ClearanceFound) -> String {
     }
     let mut text = rows.table();
     if found.pairs.is_empty() {
-        text.push_str("\nno pair of bodies moves against one another: nothing is proven\n");
         return text;
     }
     let mut table =

@@ -74,7 +74,7 @@ fn on_frustum(ends: [V; 2], axis: V, radii: [f64; 2], point: V) -> V {
             false => 0.0,
         };
         let at = [0, 1].map(|axis| from[axis] + way[axis] * t.clamp(0.0, 1.0));
-        let off = (at[0] - z).hypot(at[1] - r);
+        let off = libm::hypot(at[0] - z, at[1] - r);
         if off < best.0 {
             best = (off, at);
         }

@@ -127,7 +127,7 @@ fn given_shape(
     };
     let shape = Shape::new(pieces.iter().map(|piece| piece.placed(&placed)).collect());
     if shape.is_none() {
-        findings.push(unusable(&given.name, "it is too far away", &given.place));
+        findings.push(unusable(&given.name, "it is farther than 100 m away", &given.place));
     }
     shape
 }
@@ -166,7 +166,9 @@ fn mesh(
     });
     let read = read.and_then(|()| match count > MOST_TRIANGLES {
         true => Err(format!("{count} triangles; at most {MOST_TRIANGLES} are possible")),
-        false => Shape::mesh(&triangles).ok_or_else(|| "no triangle has an area".to_owned()),
+        false => Shape::mesh(&triangles).ok_or_else(|| {
+            "it has no triangle with an area, or a corner farther than 100 m away".to_owned()
+        }),
     });
     match read {
         Ok(shape) => {

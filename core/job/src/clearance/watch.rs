@@ -6,7 +6,7 @@ use post_clearance::piece::Way;
 use post_clearance::proof::{Body, BodyKind, Fault, Move, Proof, Verdict};
 use post_machine::description::{Machine, RapidAxes};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
-use post_readback::{BlockEffect, Motion, MotionKind, ProgramEvent};
+use post_readback::{BlockEffect, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState};
 
 use super::bodies::{ToolShape, of_tool};
 use super::{ClearanceFound, proof};
@@ -40,6 +40,8 @@ pub(super) struct ClearanceWatch<'a> {
     tool: Option<(u32, Option<f64>)>,
     /// The cutter is nowhere thinner than nearer to its tip.
     widens: bool,
+    /// It was said that the spindle turns the part.
+    turns_part: bool,
     rows: BTreeMap<[String; 2], PairRow>,
     found: ClearanceFound,
     /// What is wrong by line.
@@ -62,6 +64,7 @@ impl<'a> ClearanceWatch<'a> {
             diameters,
             tool: None,
             widens: true,
+            turns_part: false,
             rows: BTreeMap::new(),
             found,
             faults: Vec::new(),
@@ -91,6 +94,11 @@ impl<'a> ClearanceWatch<'a> {
     fn motion(&mut self, motion: &Motion) {
         self.change_tool(motion);
         self.found.motions += 1;
+        if !self.turns_part && matches!(motion.state.spindle, SpindleState::Surface { .. }) {
+            self.turns_part = true;
+            let message = "the spindle turns the part: what is clamped is looked at as it stands, and nothing is proven of how it turns".to_owned();
+            self.faults.push((motion.line, message, "programs that turn are looked at by eye; mill what turns with a machine file of its own"));
+        }
         let at_rapid = motion.kind == MotionKind::Rapid;
         let rapid = at_rapid || motion.fast;
         let together = self.control.machine.clearance.rapid_axes == RapidAxes::Together;
@@ -108,12 +116,22 @@ impl<'a> ClearanceWatch<'a> {
             !(touches && cuts)
         };
         self.proof.take(&Move { way, rapid, line: motion.line }, looks);
+        if way.independent && motion.turns() && motion.way != Interpolation::Axes {
+            // Where the control keeps the tip it may do so at rapid as well: the axes go another way then.
+            let way = Way { independent: false, ..way };
+            self.proof.take(&Move { way, rapid, line: motion.line }, looks);
+        }
     }
 
     /// Another tool, or another length of it: what is known of the pairs is put down, and the proof begins again with its
     /// bodies.
     fn change_tool(&mut self, motion: &Motion) {
         let Some(number) = motion.state.tool else {
+            if self.tool.is_none() && self.found.motions == 0 {
+                self.found
+                    .lacks
+                    .push(format!("the tool, until one is called behind line {}", motion.line));
+            }
             return;
         };
         let stated = Some(motion.state.length).filter(|length| *length > 0.0);
@@ -207,6 +225,12 @@ impl<'a> ClearanceWatch<'a> {
             }
         }
         found.pairs = self.rows.into_values().collect();
+        if found.pairs.is_empty() {
+            let message = "no two bodies move against one another: nothing is proven".to_owned();
+            let help =
+                "[solids], [fixture.NAME], [stock] and [tools.N] of the machine file have bodies";
+            found.findings.push(Diagnostic::error("clearance-body", message).help(help));
+        }
         found
     }
 }

@@ -1,0 +1,192 @@
+//! `post clearance`: what hits is found, with its pair and line, whether it was put in or grew; nothing is found where
+//! nothing is.
+
+use std::fs;
+
+use post_testkit::{assert_contains, randomised};
+use tempfile::TempDir;
+
+use crate::common::{post_in, root, sample};
+
+/// What the machine has besides its own file: a stock that the approach stays above, a holder, a cutter.
+const BODIES: &str = "extends = \"ac-trunnion\"
+name = \"with bodies\"
+[stock]
+block = [[-50, -30, 0], [50, 30, 28]]
+[tools.3]
+length = 100
+holder = [[0, 32], [20, 32], [20, 20], [60, 18]]
+cutter = [[0, 5], [40, 5]]
+";
+
+/// A folder with the program of the blade, and the machine with `more` bodies.
+fn folder(more: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    describe(&folder, more);
+    let blade = root().join(sample("blade.cls"));
+    let words = ["-m", "bodies.toml", blade.to_str().unwrap(), "-o", "blade.nc", "-q"];
+    let made = post_in(folder.path(), &words);
+    assert_eq!(made.code, 0, "{}", made.err);
+    folder
+}
+
+fn describe(folder: &TempDir, more: &str) {
+    fs::write(folder.path().join("bodies.toml"), format!("{BODIES}{more}")).unwrap();
+}
+
+/// What is said of the program, and whether it is clear.
+fn proven(folder: &TempDir, more: &[&str]) -> (String, bool) {
+    let mut words = vec!["clearance", "blade.nc", "-m", "bodies.toml"];
+    words.extend(more);
+    let run = post_in(folder.path(), &words);
+    assert!(run.code < 2, "{}", run.err);
+    (format!("{}{}", run.out, run.err), run.code == 0)
+}
+
+#[test]
+fn what_is_clear_is_proven_and_what_grows_into_another_is_not() {
+    let folder = folder("[fixture.post]\nblock = [[60, -60, 0], [90, 60, 40]]\n");
+    let (said, clear) = proven(&folder, &[]);
+    assert!(clear, "{said}");
+    assert_contains(&said, &["post   cutter T3", "stock  holder T3", "without a body"]);
+    // The same a little nearer than is kept.
+    let (said, clear) = proven(&folder, &["--set", "clearance.keep=10"]);
+    assert!(!clear);
+    assert_contains(&said, &["post comes within", "of holder T3; 10 mm are to be kept"]);
+    // The approach dives into a stock that is higher.
+    describe(&folder, "[fixture.post]\nblock = [[60, -60, 0], [90, 60, 40]]\n");
+    let higher = BODIES.replace("[50, 30, 28]", "[50, 30, 36]");
+    fs::write(folder.path().join("bodies.toml"), higher).unwrap();
+    let (said, clear) = proven(&folder, &["--set", "clearance.rapid_axes=together"]);
+    assert!(!clear);
+    assert_contains(&said, &["stock hits cutter T3", "blade.nc:19"]);
+    // A holder that is as long as its tool touches what is cut.
+    let longer = BODIES.replace("[60, 18]", "[98, 18]");
+    fs::write(folder.path().join("bodies.toml"), longer).unwrap();
+    let (said, clear) = proven(&folder, &[]);
+    assert!(!clear);
+    assert_contains(&said, &["stock hits holder T3"]);
+}
+
+#[test]
+fn pairs_that_are_left_out_are_left_out_and_names_must_be_of_something() {
+    let fixture = "[fixture.post]\nblock = [[-10, -10, 0], [10, 10, 60]]\n[clearance]\n";
+    let folder = folder(fixture);
+    assert!(!proven(&folder, &[]).1);
+    describe(
+        &folder,
+        &format!("{fixture}ignore = [[\"post\", \"cutter\"], [\"holder\", \"post\"]]\n"),
+    );
+    let (said, clear) = proven(&folder, &[]);
+    assert!(clear, "{said}");
+    describe(&folder, &format!("{fixture}ignore = [[\"pots\", \"cutter\"]]\n"));
+    let (said, clear) = proven(&folder, &[]);
+    assert!(!clear);
+    assert_contains(&said, &["[clearance] ignore names pots"]);
+}
+
+#[test]
+fn check_tells_what_touches_and_what_has_no_body() {
+    let folder = folder(
+        "[fixture.post]\nblock = [[-10, -10, 300], [10, 10, 460]]\n[fixture.head]\non = \"t\"\nblock = [[-9, -9, 400], [9, 9, 500]]\n",
+    );
+    let run = post_in(folder.path(), &["check", "bodies.toml"]);
+    assert_contains(
+        &run.err,
+        &[
+            "nothing is proven of what has no body: A, b, Y, X",
+            "head and post touch where the axes stand at zero",
+        ],
+    );
+}
+
+#[test]
+fn bodies_that_cannot_be_are_refused_by_their_line() {
+    let folder = folder("");
+    for (more, says) in [
+        ("[fixture.a]\n", "a has no shape, or more than one"),
+        (
+            "[fixture.a]\non = \"Q\"\nfile = \"a.stl\"\n",
+            "fixture a hangs on nothing of the machine",
+        ),
+        ("[fixture.a]\nfile = \"a.step\"\n", "no name of an STL file"),
+        ("[fixture.a]\nfile = \"a.stl\"\n", "there is no such regular file"),
+        ("[clearance]\nkeep = -1\n", "it cannot be below zero"),
+        ("[tools.4]\nholder = [[0, -5], [3, 5]]\n", "the holder of tool 4 has the radius -5 mm"),
+    ] {
+        describe(&folder, more);
+        let (said, clear) = proven(&folder, &[]);
+        assert!(!clear && said.contains(says), "{more}: {said}");
+    }
+}
+
+/// Where the tool stands behind each motion: line, tip and tool axis, part frame, as the table of motions has them.
+fn stands(folder: &TempDir) -> Vec<(u64, [f64; 3], [f64; 3])> {
+    let run = post_in(folder.path(), &["read", "blade.nc", "-m", "bodies.toml", "--csv", "-"]);
+    let mut rows = run.out.lines();
+    let heads: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let column = |name: &str| heads.iter().position(|head| *head == name).unwrap();
+    let tip = ["tip_x", "tip_y", "tip_z"].map(column);
+    let axis = ["axis_i", "axis_j", "axis_k"].map(column);
+    rows.map(|row| {
+        let cells: Vec<&str> = row.split(',').collect();
+        let of = |columns: [usize; 3]| columns.map(|column| cells[column].parse().unwrap());
+        (cells[0].parse().unwrap(), of(tip), of(axis))
+    })
+    .collect()
+}
+
+/// How far the cutter (a cylinder of radius 5, 40 mm long) is from a block at most: balls inside of it.
+fn farthest(tip: [f64; 3], axis: [f64; 3], [low, high]: [[f64; 3]; 2]) -> f64 {
+    let balls = (5..=35).map(|along| {
+        let off = [0, 1, 2].map(|place: usize| {
+            let at = tip[place] + axis[place] * f64::from(along);
+            (low[place] - at).max(at - high[place]).max(0.0)
+        });
+        off.iter().map(|off| off * off).sum::<f64>().sqrt() - 5.0
+    });
+    balls.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn fixtures_that_were_put_in_the_way_are_all_found() {
+    let (rounds, mut rng) = randomised(60, 321);
+    let folder = folder("");
+    let stands = stands(&folder);
+    let (mut hits, mut clear_ones) = (0, 0);
+    for _ in rounds {
+        let (_, tip, axis) = stands[rng.pick(stands.len())];
+        let along = rng.range(0.0, 60.0);
+        let size = [0; 3].map(|_| rng.range(1.0, 15.0));
+        let middle =
+            [0, 1, 2].map(|place| tip[place] + axis[place] * along + rng.range(-30.0, 30.0));
+        let block =
+            [-1.0, 1.0].map(|side| [0, 1, 2].map(|place| middle[place] + side * size[place]));
+        let first = stands.iter().find(|(_, tip, axis)| farthest(*tip, *axis, block) <= 0.0);
+        describe(
+            &folder,
+            &format!(
+                "[fixture.planted]\nblock = {block:?}\n[clearance]\nignore = [[\"holder\", \"planted\"]]\n"
+            ),
+        );
+        let (said, clear) = proven(&folder, &[]);
+        let apart = stands.iter().map(|(_, tip, axis)| farthest(*tip, *axis, block));
+        let apart = apart.fold(f64::INFINITY, f64::min);
+        let Some((line, ..)) = first else {
+            clear_ones += u32::from(clear);
+            // Between the ends of motions it may come nearer, not on the way down alone.
+            assert!(clear || apart < 8.0, "{apart} {block:?} {said}");
+            continue;
+        };
+        hits += 1;
+        assert!(!clear, "{block:?} {said}");
+        let found = said.lines().find_map(|line| line.trim().strip_prefix("--> blade.nc:"));
+        let found: u64 = found.unwrap().split(':').next().unwrap().parse().unwrap();
+        assert!(
+            said.contains("planted hits cutter T3")
+                || said.contains("planted stays clear of cutter T3")
+        );
+        assert!(found <= *line, "{found} {line} {said}");
+    }
+    assert!(hits > 3 && clear_ones > 3, "{hits} {clear_ones}");
+}

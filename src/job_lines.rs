@@ -247,6 +247,10 @@ impl JobWords<'_> {
         if programs.len() > 1 {
             self.refuse_one_place(programs.len())?;
         }
+        if self.takes == Takes::ClAlone {
+            let files = programs.into_iter().flat_map(JobProgram::each_cl);
+            return files.map(|program| self.line(&program, named)).collect();
+        }
         programs.into_iter().map(|program| self.line(program, named)).collect()
     }
 

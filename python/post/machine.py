@@ -25,6 +25,8 @@ Value = str | bool | int | float | np.integer[Any] | np.floating[Any] | Sequence
 class Options(TypedDict, total=False):
     """Options of a job, those of the command: ``post --help`` tells what they mean."""
 
+    then: Sequence[str] | None
+    operations: Sequence[str | int] | None
     units: Literal["mm", "inch"] | None
     msys: Literal["keep", "apply"] | None
     unknown: Literal["error", "known", "warn", "pass"] | None

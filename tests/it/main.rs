@@ -29,6 +29,7 @@ mod guides;
 mod hole_bounds;
 mod job_file;
 mod jobs;
+mod joined_files;
 mod languages;
 mod lengths;
 mod library;

@@ -54,6 +54,7 @@ fn where_a_part_may_sit_anywhere_its_travel_is_one_warning() {
     let verify = ["verify", "part.nc", "-m", "vmc", "--against", "part.cls"];
     let read = bench.run(&[&verify[..], &long].concat());
     assert_eq!(read.code, 0, "{}", read.err);
+    assert!(read.err.contains(room), "{}", read.err);
     // The ends of that room, and past them.
     for (x, code) in [("-910", 0), ("-190", 0), ("-911", 1), ("-189", 1), ("0", 1)] {
         let mount = format!("{x},0,0");
@@ -71,8 +72,19 @@ fn a_part_that_fits_nowhere_is_refused() {
     let bench = Bench::new(&slot(1500.0));
     let done = bench.post(&["--tool-length", "100"]);
     assert_eq!(done.code, 1, "{}", done.err);
-    let fits = "error[over-travel]: X goes 1100.000 mm, from 400.000 to 1500.000 mm, and its travel is 1020.000 mm";
-    assert!(done.err.contains(fits), "{}", done.err);
+    let fits = "error[over-travel]: X goes 1100.000 mm, from 400.000 (line 5) to 1500.000 mm (line 8), and its travel is 1020.000 mm";
+    assert!(done.err.contains(fits) && done.err.contains("part.cls:8:1"), "{}", done.err);
+    // A program of another hand is refused by its own lines.
+    let near = Bench::new(&slot(700.0));
+    near.post(&["--tool-length", "100"]);
+    let long = near.program().replace("X700.000", "X1500.000");
+    fs::write(near.0.path().join("part.nc"), &long).unwrap();
+    fs::write(near.0.path().join("part.cls"), slot(1500.0)).unwrap();
+    let read =
+        near.run(&["verify", "part.nc", "-m", "vmc", "--against", "part.cls", "--tool-length=100"]);
+    assert_eq!(read.code, 1, "{}", read.err);
+    let told = "error[over-travel]: X goes 1100.000 mm, from 400.000 (line ";
+    assert!(read.err.contains(told) && read.err.contains("part.nc:"), "{}", read.err);
 }
 
 #[test]

@@ -2,10 +2,11 @@
 //! path of the first.
 
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 use post_host::Finder;
 use post_machine::description::{Machine, Setting};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, SourceFiles};
 use post_posting::report::PostingReport;
 use post_readback::FedRapids;
 use post_readback::course::CourseFacts;
@@ -217,7 +218,7 @@ impl<'a> Conversion<'a> {
         let (cut_path, _) = CutPath::of(&mut again, machine.control_point.along);
         let against = VerifyReference {
             course: ProgramCourse::new(self.run()?, finer),
-            name: name.clone(),
+            files: SourceFiles::new(name, Arc::default()),
             tools: read.tools().to_vec(),
             own_lines: Vec::new(),
             cut_path: Some(cut_path),

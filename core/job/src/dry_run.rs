@@ -13,7 +13,8 @@ use post_posting::report::PostingReport;
 use super::plugin_finder;
 use super::posting_pass::{self, OpenedPlugins, PostingPass, ProgramHead};
 use crate::failure::Failure;
-use crate::files::ClInput;
+use crate::files::ClSource;
+use crate::operations;
 use crate::session::Session;
 use crate::settings::JobSettings;
 
@@ -86,8 +87,11 @@ impl<'a> DryRun<'a> {
         let head = ProgramHead { name: &program, cl_file: Some(source), preview: None };
         let OpenedPlugins { dialect, mut model, .. } =
             OpenedPlugins::open(&self.finder, machine, head)?;
-        let input = ClInput::open(&self.session, source)?;
-        let mut request = posting_pass::posting_request(self.arguments, &input.name);
+        let mut cl = ClSource::of_job(&self.session, self.arguments, true)?;
+        let chosen = operations::chosen(self.arguments, &mut cl)?;
+        let input = cl.open()?;
+        let mut request = posting_pass::posting_request(self.arguments, &input);
+        request.lines = chosen.map(|lines| lines.ranges);
         if request.reading.spindle == DefaultSpindle::Unknown {
             // Nothing is written: how fast the spindle turns is nobody's business.
             request.reading.spindle = DefaultSpindle::Still;

@@ -24,6 +24,7 @@ pub mod nc_program;
 mod nc_to_cl;
 pub mod old_summary;
 mod one_program;
+pub mod operations;
 pub mod other_dialect;
 mod other_language;
 pub mod place;

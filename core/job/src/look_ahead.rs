@@ -21,7 +21,7 @@ pub fn look_ahead(
     machine: &Machine,
     finder: &Finder,
     source: &mut ClSource,
-    lines: Option<Range<u64>>,
+    lines: Option<Vec<Range<u64>>>,
 ) -> Result<ProgramPreview, Failure> {
     let plain = machine.without_text();
     let program = super::program_name(&arguments.input, None);
@@ -29,11 +29,8 @@ pub fn look_ahead(
     let OpenedPlugins { mut dialect, mut model, .. } = OpenedPlugins::open(finder, &plain, head)?;
     let planes = posting_pass::file_preview(arguments, source, &plain, &dialect)?;
     let input = source.open()?;
-    let request = PostingRequest {
-        ahead: planes,
-        lines,
-        ..posting_pass::posting_request(arguments, &input.name)
-    };
+    let request =
+        PostingRequest { ahead: planes, lines, ..posting_pass::posting_request(arguments, &input) };
     let mut ahead = ProgramPreview::default();
     let pass = PostingPass {
         machine: &plain,

@@ -19,6 +19,7 @@ use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::nc_program::{ProgramText, Reread};
 use crate::one_program::OneProgram;
+use crate::operations::ProgramLines;
 use crate::plan_rounds;
 use crate::plan_worth;
 use crate::plugin_finder;
@@ -76,11 +77,17 @@ pub fn target(
 #[derive(Clone, Debug)]
 pub struct ProgramPart {
     /// Lines of the CL file that it is made of; none: all.
-    pub lines: Option<Range<u64>>,
+    pub lines: Option<ProgramLines>,
     /// Where it goes.
     pub target: PathArg,
     /// The machine with its settings.
     pub machine: Machine,
+}
+
+impl ProgramPart {
+    fn ranges(&self) -> Option<Vec<Range<u64>>> {
+        self.lines.as_ref().map(|lines| lines.ranges.clone())
+    }
 }
 
 /// The text of a program in the making, that can be read again.
@@ -400,7 +407,7 @@ impl<'a> ProgramMaker<'a> {
             // It was written in this run, or lines of the user's have another.
             any_work_offset: true,
             own: true,
-            lines: part.lines.clone(),
+            lines: part.ranges(),
             threads: self.threads,
         };
         let ProgramInput { name, text } = program;
@@ -427,7 +434,7 @@ impl<'a> ProgramMaker<'a> {
             offsets: None,
             limits: Limits::default(),
             period,
-            lines: part.lines.clone(),
+            lines: part.ranges(),
             threads: self.threads,
         };
         let ProgramInput { name, text } = program;

@@ -72,6 +72,13 @@ impl OldSummary {
             ("tcp", SettingValue::Text(tcp)),
             ("tolerance", SettingValue::Number(tip)),
         ];
+        let point = summary.get("mount_mm").and_then(Value::as_array).map(|point| {
+            let numbers =
+                point.iter().filter_map(Value::as_f64).map(|number| format!("{number:?}"));
+            numbers.collect::<Vec<_>>().join(",")
+        });
+        told.extend(point.map(|point| ("mount", SettingValue::Text(point))));
+        told.extend(number("turn_deg").map(|turn| ("turn", SettingValue::Number(turn))));
         let tools = summary.get("tools").and_then(Value::as_array);
         let mut lengths = tools.into_iter().flatten().filter_map(|tool| {
             let said = tool.get("source").and_then(Value::as_str) == Some("option");
@@ -91,7 +98,7 @@ impl OldSummary {
             "{} tells of a program for {}, and this one is for {machine}",
             self.name, self.machine
         );
-        let help = "what belongs to a machine alone, its dialect and its tolerances, was taken all the same";
+        let help = "what belongs to a machine alone, its dialect, its tolerances and where the part sits, was taken all the same";
         Some(Diagnostic::warning("like", message).help(help))
     }
 }

@@ -1,7 +1,6 @@
 //! One CL file, or some of its lines, on one machine: one program.
 
 use std::num::NonZeroUsize;
-use std::ops::Range;
 use std::sync::Arc;
 
 use post_host::Finder;
@@ -15,6 +14,7 @@ use super::posting_pass::{self, OpenedPlugins, PostingExtras, PostingPass, Progr
 use crate::failure::Failure;
 use crate::files::{ClSource, PathArg};
 use crate::job_file::JobMark;
+use crate::operations::ProgramLines;
 use crate::session::Session;
 use crate::settings::JobSettings;
 
@@ -32,7 +32,7 @@ pub struct OneProgram<'a> {
     /// Where it will stand.
     pub target: &'a PathArg,
     /// Lines of the CL file that it is made of; none: all.
-    pub lines: Option<Range<u64>>,
+    pub lines: Option<ProgramLines>,
     /// The error model's word is taken.
     pub trust_model: bool,
     /// Its feed is planned.
@@ -70,7 +70,7 @@ impl OneProgram<'_> {
         // Of a part of the file other tools and extents are known than of the whole.
         let part_ahead = match &lines {
             Some(lines) if machine.program.looks_ahead => {
-                let lines = Some(lines.clone());
+                let lines = Some(lines.ranges.clone());
                 Some(super::look_ahead(session, arguments, machine, finder, source, lines)?)
             }
             _ => None,
@@ -79,6 +79,9 @@ impl OneProgram<'_> {
             None => ahead,
             Some(_) => part_ahead.as_ref(),
         };
+        let mut remarks: Vec<String> = arguments.mark.iter().map(JobMark::remark).collect();
+        remarks.extend(lines.as_ref().and_then(ProgramLines::remark));
+        let left_out = lines.as_ref().map(|lines| lines.left_out.clone()).unwrap_or_default();
         let head = ProgramHead { name: &program, cl_file: Some(cl_file), preview: ahead };
         let OpenedPlugins { mut dialect, mut model, uses } =
             OpenedPlugins::open(finder, machine, head)?;
@@ -93,16 +96,17 @@ impl OneProgram<'_> {
                 program,
                 cl_file: plugin_finder::cl_name(cl_file),
                 ahead: ahead.cloned(),
-                remark: arguments.mark.as_ref().map(JobMark::remark),
+                remarks,
             },
-            lines,
-            ..posting_pass::posting_request(arguments, &input.name)
+            lines: lines.map(|lines| lines.ranges),
+            ..posting_pass::posting_request(arguments, &input)
         };
         let (dialect, model) = (&mut dialect, &mut model);
         let pass = PostingPass { machine, request, threads, dialect, model };
         let (mut report, findings) = pass.write(session, input, file, beside)?;
         if let Some(report) = &mut report {
             report.plugins = uses.to_vec();
+            report.left_out = left_out;
         }
         Ok((report, findings))
     }

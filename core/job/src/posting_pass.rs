@@ -179,11 +179,12 @@ pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<()
     PostingPass { machine, request, threads: NonZeroUsize::MIN, dialect, model }.check()
 }
 
-/// How the CL file that is called `file` in messages is posted.
-pub fn posting_request(arguments: &JobSettings, file: &str) -> PostingRequest {
+/// How the CL file is posted.
+pub fn posting_request(arguments: &JobSettings, input: &ClInput) -> PostingRequest {
     PostingRequest {
         reading: ReadingOptions {
-            file: file.to_owned(),
+            file: input.name.clone(),
+            further: Arc::clone(&input.further),
             units: arguments.reading.units,
             tool: arguments.reading.tool,
             apply_msys: arguments.reading.msys == Msys::Apply,
@@ -210,7 +211,7 @@ pub fn file_preview(
         return Ok(None);
     }
     let input = source.open()?;
-    let reading = posting_request(arguments, &input.name).reading;
+    let reading = posting_request(arguments, &input).reading;
     Ok(Some(preview(input, machine, reading)?))
 }
 

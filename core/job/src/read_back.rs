@@ -3,11 +3,12 @@
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::num::NonZeroUsize;
 use std::ops::Range;
+use std::sync::Arc;
 use std::thread;
 
 use post_host::Finder;
 use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
-use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
+use post_machine::diagnostic::{Diagnostic, Severity, SourceFiles, SourcePlace};
 use post_plugin::{Lengths, Meaning};
 use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
 use post_readback::course::cl::{ClCourse, ClSettings, ClTool};
@@ -23,7 +24,7 @@ use super::plugin_finder;
 use crate::beside::Work;
 use crate::blocks_ahead::{RunBlocks, TOGETHER};
 use crate::failure::Failure;
-use crate::files::{ClSource, FileFault, ReadPosition, Watched};
+use crate::files::{ClInput, ClSource, FileFault, ReadPosition, Watched};
 use crate::nc_program::{ProgramText, RunningProgram};
 use crate::session::Session;
 use crate::settings::{JobSettings, Msys};
@@ -58,7 +59,7 @@ pub struct ReadingSetup<'a> {
     /// Each line is told with the solution of the machine that it ends in.
     pub solutions: bool,
     /// Lines of the CL file that the program is made of; none: all.
-    pub lines: Option<Range<u64>>,
+    pub lines: Option<Vec<Range<u64>>>,
     /// Threads that it is read on at most.
     pub threads: NonZeroUsize,
 }
@@ -79,6 +80,8 @@ pub struct VerifiedProgram {
     pub findings: Vec<Diagnostic>,
     /// Blocks that were run.
     pub blocks: u64,
+    /// The files that it was held against.
+    pub files: SourceFiles,
 }
 
 impl VerifiedProgram {
@@ -102,7 +105,7 @@ fn work_offset(finder: &Finder, machine: &Machine, spoken: &DialectVocabulary) -
 }
 
 /// How the CL file is meant, as posting was told.
-pub fn course_settings(arguments: &JobSettings, machine: &Machine, file: &str) -> ClSettings {
+pub fn course_settings(arguments: &JobSettings, machine: &Machine, input: &ClInput) -> ClSettings {
     ClSettings {
         units: arguments.reading.units,
         apply_msys: arguments.reading.msys == Msys::Apply,
@@ -118,7 +121,8 @@ pub fn course_settings(arguments: &JobSettings, machine: &Machine, file: &str) -
             arguments.reading.unknown,
             UnknownWordPolicy::Warn | UnknownWordPolicy::Pass
         ),
-        ..ClSettings::of(machine, file)
+        further: Arc::clone(&input.further),
+        ..ClSettings::of(machine, &input.name)
     }
 }
 
@@ -175,8 +179,8 @@ pub fn verify(
     let ReadingSetup { arguments, machine, .. } = reading;
     // What the tools are called and how long they are stands anywhere in the CL file.
     let first = source.open()?;
-    let cl_name = first.name.clone();
-    let settings = course_settings(arguments, machine, &cl_name);
+    let files = first.files();
+    let settings = course_settings(arguments, machine, &first);
     let mut course = ClCourse::new(settings.clone(), first.bytes);
     let along = machine.control_point.along;
     let (bounds, mut findings) = CutBounds::of(&mut course, along);
@@ -186,7 +190,7 @@ pub fn verify(
     let course = ClCourse::new(settings, source.open()?.bytes);
     let against = VerifyReference {
         course: CourseWindow::new(course, reading.lines.clone()),
-        name: cl_name,
+        files,
         tools,
         own_lines,
         cut_path: Some(CutPath::when_asked(bounds, Box::new(again), along)),
@@ -236,8 +240,8 @@ impl<F: FnMut(&BlockReport)> VerifyWatch for F {
 pub struct VerifyReference<C> {
     /// The path.
     pub course: C,
-    /// The file that it comes from, as messages call it.
-    pub name: String,
+    /// The files that it comes from, as messages call them.
+    pub files: SourceFiles,
     /// Its tools.
     pub tools: Vec<ClTool>,
     /// Its texts that are lines of the program.
@@ -287,7 +291,7 @@ pub fn hold<C: Course>(
     watch: &mut dyn VerifyWatch,
 ) -> Result<VerifiedProgram, Failure> {
     let machine = reading.machine;
-    let VerifyReference { course, name: cl_name, tools, own_lines, cut_path } = against;
+    let VerifyReference { course, files, tools, own_lines, cut_path } = against;
     let spoken = nc_program::spoken(reading.finder, machine)?;
     let offsets = match &reading.offsets {
         Some(offsets) => Offsets {
@@ -299,7 +303,11 @@ pub fn hold<C: Course>(
     };
     let mut control = NcControl::of(machine, spoken, offsets, reading.limits);
     control.own_lines = own_lines;
-    let rules = VerifyRules { rows: watch.wants_lines(), ..rules(reading, &control, &tools) };
+    let rules = VerifyRules {
+        rows: watch.wants_lines(),
+        files: files.clone(),
+        ..rules(reading, &control, &tools)
+    };
     let own = rules.own;
     let mut verifier = Verifier::new(&control.counted, rules, course);
     if let Some(cut_path) = cut_path {
@@ -356,9 +364,9 @@ pub fn hold<C: Course>(
     for fault in &found.faults {
         let text = fault.nc_line.and_then(|line| texts.iter().find(|(known, _)| *known == line));
         let text = text.map_or("", |(_, text)| text.as_str());
-        findings.push(fault.diagnostic(name, text, &cl_name));
+        findings.push(fault.diagnostic(name, text, &files));
     }
-    Ok(VerifiedProgram { found, findings, blocks })
+    Ok(VerifiedProgram { found, findings, blocks, files })
 }
 
 /// What cannot be read of the program `name`, and what is taken for granted of it.
@@ -454,7 +462,7 @@ fn noticed(name: &str, found: &Verification) -> Vec<Diagnostic> {
     let left = found.left_on.iter().map(|left| {
         Diagnostic::warning(left.code, counted(&left.message, left.count)).at(at(left.line))
     });
-    near.chain(left).collect()
+    near.chain(left).chain(found.part_place.clone()).collect()
 }
 
 /// What a program is held to.

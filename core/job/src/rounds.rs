@@ -69,7 +69,7 @@ impl<'r, 'p> Rounds<'r, 'p> {
             offsets: None,
             limits: Limits::default(),
             period: None,
-            lines: lines.clone(),
+            lines: lines.as_ref().map(|lines| lines.ranges.clone()),
             threads: *threads,
         };
         let mut heard = |sample: &Sample| {

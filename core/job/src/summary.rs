@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use post_grammar::text::excerpt;
 use post_posting::plan::PlanReport;
 use post_posting::report::{
     AxisRange, FastRapids, LengthSource, PluginUse, PostingReport, ReportedDeviation, ReportedTool,
@@ -10,6 +11,7 @@ use post_readback::verify::Verification;
 use serde::Serialize;
 
 use crate::files::PathArg;
+use crate::operations::LONGEST_LIST;
 use crate::predict::Prediction;
 use crate::text::{at_most, clock, number};
 use crate::text_table::NamedValues;
@@ -89,6 +91,11 @@ fn rows(
         };
         rows.row(kind, format_args!("{name} {version} ({}){asked}", origin(plugin)));
     }
+    let left_out = report.left_out.join(", ");
+    rows.row_if(
+        "left out",
+        (!left_out.is_empty()).then(|| excerpt(&left_out, LONGEST_LIST).into_owned()),
+    );
     rows.row("records read", report.records);
     rows.row("moves", report.moves);
     rows.row("blocks", blocks(report));
@@ -102,12 +109,12 @@ fn rows(
             ),
         );
     }
-    let tip = certified(report.tip_deviation_mm, "mm", 6);
+    let tip = certified(report, report.tip_deviation_mm, "mm", 6);
     rows.row("tip deviation", format_args!("{tip}, tolerance {} mm", report.tolerance_mm));
-    let axis = certified(report.axis_deviation_deg, "°", 5);
+    let axis = certified(report, report.axis_deviation_deg, "°", 5);
     let tolerance = report.axis_tolerance_deg;
     rows.row("axis deviation", format_args!("{axis}, tolerance {tolerance:.4}°"));
-    rows.row_if("rapids", report.rapids_along_axes.then(|| along_axes(report.rapid_deviation_mm)));
+    rows.row_if("rapids", report.rapids_along_axes.then(|| along_axes(report, report.rapid_deviation_mm)));
     rows.row_if("read back", read_back.map(as_asked));
     for used in report.axes.iter().filter(|axis| axis.min <= axis.max) {
         rows.row(format_args!("axis {}", used.name), used_of(used));
@@ -125,7 +132,7 @@ fn rows(
         rows.row("held by", held_by(plan));
     }
     let fast = &report.fast_rapids;
-    rows.row_if("fast rapids", (fast.count > 0).then(|| beyond_max_feed(fast)));
+    rows.row_if("fast rapids", (fast.count > 0).then(|| beyond_max_feed(report, fast)));
     let ignored = report.ignored_words.iter().map(|(word, count)| format!("{word} {count}"));
     let ignored: Vec<String> = ignored.collect();
     rows.row_if("words ignored", (!ignored.is_empty()).then(|| ignored.join(", ")));
@@ -218,10 +225,13 @@ fn time(report: &PostingReport) -> String {
     )
 }
 
-fn beyond_max_feed(fast: &FastRapids) -> String {
+fn beyond_max_feed(report: &PostingReport, fast: &FastRapids) -> String {
     format!(
         "{}, {} up to {:.2} times its max_feed (CL line {}) if the control limits the axes of the program alone; [control] rapid = \"linear\" writes them as feed moves",
-        fast.count, fast.axis, fast.factor, fast.line
+        fast.count,
+        fast.axis,
+        fast.factor,
+        report.cl_files.line(fast.line)
     )
 }
 
@@ -299,18 +309,24 @@ fn held_by(plan: &PlanReport) -> String {
 }
 
 /// A certified maximum and its place.
-fn along_axes(off: ReportedDeviation) -> String {
-    let off = certified(off, "mm", 3);
+fn along_axes(report: &PostingReport, off: ReportedDeviation) -> String {
+    let off = certified(report, off, "mm", 3);
     format!("straight in the axes, off the straight way of the tip: {off}")
 }
 
-fn certified(deviation: ReportedDeviation, unit: &str, decimals: u8) -> String {
+fn certified(
+    report: &PostingReport,
+    deviation: ReportedDeviation,
+    unit: &str,
+    decimals: u8,
+) -> String {
     let value = at_most(deviation.value, decimals);
     if deviation.line == 0 {
         return format!("{value} {unit}");
     }
     format!(
         "certified at most {value} {unit}, in line {} of the program, CL line {}",
-        deviation.block, deviation.line
+        deviation.block,
+        report.cl_files.line(deviation.line)
     )
 }

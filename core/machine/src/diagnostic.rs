@@ -2,6 +2,7 @@
 
 mod nearest;
 mod short;
+mod source_files;
 
 use std::ops::Range;
 
@@ -16,6 +17,7 @@ const SHOWN: usize = 200;
 
 pub use nearest::{meant, nearest};
 pub use short::Short;
+pub use source_files::{FurtherFile, SourceFiles};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

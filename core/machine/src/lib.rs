@@ -12,6 +12,7 @@ pub mod description;
 pub mod diagnostic;
 mod halton;
 pub mod kinematics;
+pub mod part_anywhere;
 pub mod place;
 pub mod program_text;
 pub mod servo;

@@ -8,7 +8,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use post_grammar::{GotoRun, Record, SyntaxFault};
-use post_machine::diagnostic::{Diagnostic, LimitExcess, Severity, SourcePlace, unreadable};
+use post_machine::diagnostic::{
+    Diagnostic, LimitExcess, Severity, SourceFiles, SourcePlace, unreadable,
+};
 
 use crate::source_buffer::SourceBuffer;
 
@@ -27,7 +29,7 @@ const MOST_ALIKE: u64 = 200;
 /// The findings of one run. Every stage has a handle, and may add to them.
 #[derive(Clone, Debug)]
 pub(crate) struct Findings {
-    file: Rc<str>,
+    files: Rc<SourceFiles>,
     inner: Rc<RefCell<FindingList>>,
 }
 
@@ -127,14 +129,14 @@ pub fn without_numbers(sentence: &str) -> String {
 }
 
 impl Findings {
-    /// None yet, of a CL file by that name.
-    pub(crate) fn new(file: &str) -> Self {
-        Self { file: file.into(), inner: Rc::default() }
+    /// None yet, of these CL files.
+    pub(crate) fn new(files: SourceFiles) -> Self {
+        Self { files: Rc::new(files), inner: Rc::default() }
     }
 
-    /// Name of the CL file, as in messages.
+    /// Name of the CL file, of several the first, as in messages.
     pub(crate) fn file(&self) -> &str {
-        &self.file
+        self.files.first()
     }
 
     /// Keeps the text of a record as long as findings may be made for it: `settled` gives the line before which
@@ -155,6 +157,11 @@ impl Findings {
         self.inner.borrow_mut().source.keep_run(run, text, settled);
     }
 
+    /// The CL files.
+    pub(crate) fn files(&self) -> &SourceFiles {
+        &self.files
+    }
+
     /// The text of a line of the CL file; empty if no finding was to be made for it any more.
     pub(crate) fn text(&self, line: u64) -> String {
         self.inner.borrow().source.text(line).unwrap_or_default()
@@ -169,13 +176,13 @@ impl Findings {
     /// A finding with its place at a line of the CL file.
     pub(crate) fn placed(&self, line: u64, finding: Diagnostic) -> Diagnostic {
         let text = self.text(line);
-        let place = SourcePlace::new(&self.file, line, &text, 0..text.len());
+        let place = SourcePlace::new(self.file(), line, &text, 0..text.len());
         finding.at(Some(place))
     }
 
     /// A line of the CL file that cannot be read.
     pub(crate) fn unreadable(&self, fault: &SyntaxFault) {
-        self.add(unreadable(&self.file, fault));
+        self.add(unreadable(self.file(), fault));
     }
 
     /// A finding that has its place, or has none.
@@ -227,13 +234,15 @@ impl Findings {
     /// The warnings as sentences, in the order of the lines.
     pub(crate) fn warnings(&self) -> Vec<String> {
         let inner = self.inner.borrow();
-        let mut warnings = inner.told();
+        let mut warnings = inner.told(&self.files);
         warnings.retain(|finding| finding.severity == Severity::Warning);
         warnings.sort_by_key(line_of);
         warnings
             .into_iter()
             .map(|finding| match &finding.place {
-                Some(place) => format!("line {}: {}", place.line, finding.message),
+                Some(place) => {
+                    format!("line {}: {}", self.files.line(place.line), finding.message)
+                }
                 None => finding.message,
             })
             .collect()
@@ -241,8 +250,9 @@ impl Findings {
 
     /// All findings in the order of the lines, those without a line last.
     pub(crate) fn sorted(self) -> Vec<Diagnostic> {
-        let mut found = self.inner.borrow().told();
+        let mut found = self.inner.borrow().told(&self.files);
         found.sort_by_key(line_of);
+        found.iter_mut().for_each(|finding| self.files.place(finding));
         found
     }
 }
@@ -293,7 +303,7 @@ impl FindingList {
     }
 
     /// What was found, each with how often.
-    fn told(&self) -> Vec<Diagnostic> {
+    fn told(&self, files: &SourceFiles) -> Vec<Diagnostic> {
         let told = |(finding, repeat): (&Diagnostic, &Repeat)| {
             let mut finding = finding.clone();
             if let Some((extreme, _)) = &repeat.extreme
@@ -305,14 +315,16 @@ impl FindingList {
             let more = match (&repeat.extreme, repeat.count - 1) {
                 (_, 0) => return finding,
                 (Some((extreme, line)), _) => format!(
-                    "; {} points pass it, the farthest with {} on line {line}",
-                    repeat.count, extreme.value
+                    "; {} points pass it, the farthest with {} on line {}",
+                    repeat.count,
+                    extreme.value,
+                    files.line(*line)
                 ),
                 (None, 1) if repeat.last > 0 => {
-                    format!("; one more like it, on line {}", repeat.last)
+                    format!("; one more like it, on line {}", files.line(repeat.last))
                 }
                 (None, more) if repeat.last > 0 => {
-                    format!("; {more} more like it, the last on line {}", repeat.last)
+                    format!("; {more} more like it, the last on line {}", files.line(repeat.last))
                 }
                 (None, more) => format!("; {more} more like it"),
             };

@@ -18,8 +18,8 @@ pub struct JobFacts {
     pub cl_file: String,
     /// What a first pass found; none if there was none.
     pub ahead: Option<ProgramPreview>,
-    /// What the head of the program says besides.
-    pub remark: Option<String>,
+    /// What the head of the program says besides, a remark each.
+    pub remarks: Vec<String>,
 }
 
 /// What a first pass over a CL file found.

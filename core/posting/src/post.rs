@@ -9,6 +9,7 @@ use post_grammar::{GotoRun, Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::part_anywhere::AxisWay;
 use post_plugin::{DialectSession, ModelSession};
 
 use crate::accuracy::RunColumns;
@@ -56,7 +57,7 @@ pub struct PostingRequest {
     /// if nothing is said.
     pub longest_run: Option<usize>,
     /// Lines of the CL file that become the program, if not all: those before them set the state that it begins in.
-    pub lines: Option<Range<u64>>,
+    pub lines: Option<Vec<Range<u64>>>,
 }
 
 /// Posts one CL file, record by record: the stages, and what lies between them.
@@ -208,7 +209,7 @@ impl<'a> Post<'a> {
         let writes = dialect.capabilities();
         let planes = wants_planes(machine, writes);
         let ahead = job.ahead.filter(|_| planes);
-        let findings = Findings::new(&job.reading.file);
+        let findings = Findings::new(job.reading.files());
         let expand =
             ExpandStage::new(machine, job.reading.chord_tolerance, writes, ahead, &findings);
         let mut stages = PostStages {
@@ -285,12 +286,38 @@ impl<'a> Post<'a> {
     /// Takes a record.
     #[inline]
     pub fn record(&mut self, record: &Record<'_>) {
+        if self.interpreter.file_begins(record.line) {
+            self.begin_file(record.line);
+        }
         self.records += 1;
         self.last_line = record.line;
         let (stages, steps) = (&self.stages, &self.steps);
         let waiting = steps.first().map(|(line, _)| *line);
         self.findings.read(record, || [waiting, stages.settled_line()].into_iter().flatten().min());
         self.interpret(record);
+    }
+
+    /// The file behind the one that is read begins on this line.
+    #[cold]
+    fn begin_file(&mut self, line: u64) {
+        self.run();
+        self.end_of_file(self.interpreter.ends_in_line_end());
+        self.interpreter.end_file();
+        let Self { interpreter, window, steps, .. } = self;
+        interpreter.begin_file(&mut |step| match window {
+            None => steps.push((line, step)),
+            Some(window) => window.step(line, step, steps),
+        });
+        self.gather();
+        self.run();
+    }
+
+    /// Says where the file that ends here may be cut off.
+    fn end_of_file(&self, line_end: bool) {
+        let last = self.findings.text(self.last_line);
+        if let Some(finding) = self.interpreter.cut_off(&last, line_end) {
+            self.findings.at(self.last_line, finding);
+        }
     }
 
     /// Takes a record whose text is kept.
@@ -302,6 +329,11 @@ impl<'a> Post<'a> {
             Some(window) => self.interpreter.record(record, &mut |step| {
                 window.step(record.line, step, steps);
             }),
+        }
+        if let Some(window) = &mut self.window
+            && let Some(line) = window.take_cut_from_outside()
+        {
+            self.findings.at(line, refusal::cut_from_outside());
         }
         if self.interpreter.has_findings() {
             // What the stages find in the lines before comes before it.
@@ -398,10 +430,7 @@ impl<'a> Post<'a> {
             return;
         }
         self.run();
-        let last = self.findings.text(self.last_line);
-        if let Some(finding) = self.interpreter.cut_off(&last, line_end) {
-            self.findings.at(self.last_line, finding);
-        }
+        self.end_of_file(line_end);
     }
 
     /// Whether there are so many faults that reading on would only repeat them.
@@ -432,9 +461,10 @@ impl<'a> Post<'a> {
             self.findings.add(warning);
         }
         let mut report = (!self.findings.failed()).then(|| self.report());
-        let found = report
-            .as_ref()
-            .and_then(|report| part_anywhere::judge(self.machine, &report.axes, &report.tools));
+        let found = report.as_ref().and_then(|report| {
+            let too_long = |way: &AxisWay<'_>| self.fits_nowhere(way);
+            part_anywhere::judge(self.machine, &report.axes, &report.tools, too_long)
+        });
         if let Some(found) = found {
             self.findings.add(found);
             report = report.filter(|_| !self.findings.failed());
@@ -442,11 +472,23 @@ impl<'a> Post<'a> {
         (report, self.findings.sorted())
     }
 
+    /// The program goes farther than an axis, on which lines.
+    fn fits_nowhere(&self, way: &AxisWay<'_>) -> Diagnostic {
+        let joint = self.machine.axes.iter().position(|axis| axis.name == way.name);
+        let lines = self.stages.emit.extremes().lines_of(joint.unwrap_or_default());
+        let [first, last] = lines.map(|line| self.findings.files().line(line));
+        self.findings.placed(lines[0].max(lines[1]), way.too_long([&first, &last]))
+    }
+
     /// Takes the findings of the interpreter.
     #[cold]
     fn gather(&mut self) {
         for finding in self.interpreter.take_findings() {
-            self.findings.add(finding);
+            // Of several files the sentence must say which.
+            match self.interpreter.files_begun() > 0 && finding.place.is_none() {
+                true => self.findings.at(self.last_line, finding),
+                false => self.findings.add(finding),
+            }
         }
     }
 
@@ -480,6 +522,10 @@ impl<'a> Post<'a> {
             }
             .to_owned(),
             model: machine.accuracy.model.clone(),
+            mount_mm: machine.mount_said.then(|| machine.mount.into()),
+            turn_deg: Some(machine.turn.to_degrees()).filter(|turn| *turn != 0.0).map(tidy),
+            cl_files: self.findings.files().clone(),
+            left_out: Vec::new(),
             records: self.records,
             moves: stages.configuration.moves(),
             blocks: extremes.blocks,

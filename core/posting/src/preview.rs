@@ -63,6 +63,9 @@ impl PreviewPass {
     #[inline]
     pub fn record(&mut self, record: &Record<'_>) {
         let still = &mut self.still;
+        if self.interpreter.file_begins(record.line) {
+            self.interpreter.begin_file(&mut |step| still.step(record.line, &step));
+        }
         self.interpreter.record(record, &mut |step| still.step(record.line, &step));
         if self.interpreter.has_findings() {
             // They are reported when the program is made.

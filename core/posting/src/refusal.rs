@@ -430,3 +430,12 @@ pub(crate) fn stuck(
         ),
     }
 }
+
+/// A cut from a point that nothing of the program leads to.
+pub(crate) fn cut_from_outside() -> Diagnostic {
+    Diagnostic::error(
+        "operation",
+        "this cut begins where a move ends that is not part of the program: the tool would come to its end at rapid",
+    )
+    .help("choose the operation before it too, or let the CAM system begin this one with a rapid")
+}

@@ -6,6 +6,7 @@ pub use crate::configuration::{LengthSource, ReportedTool};
 use crate::plan::PlanReport;
 
 use post_machine::description::ControlPoint;
+use post_machine::diagnostic::SourceFiles;
 
 /// The summary of one program. Its keys are those of `--summary FILE.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -18,6 +19,18 @@ pub struct PostingReport {
     pub tcp: String,
     /// Name of the error model.
     pub model: String,
+    /// Where the part origin sits, all axes at zero, machine frame, mm; none where nobody says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mount_mm: Option<[f64; 3]>,
+    /// How the part is turned about its Z, degrees; none where it is not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turn_deg: Option<f64>,
+    /// The CL files that line numbers count through, where there are several.
+    #[serde(skip_serializing_if = "SourceFiles::is_one")]
+    pub cl_files: SourceFiles,
+    /// Operations of the CL files that are left out because others were chosen.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
     /// Records read from the CL file.
     pub records: u64,
     /// Moves that they mean (arcs, splines and cycles count with all their moves).

@@ -2,6 +2,7 @@
 
 use std::io::{self, Cursor, Read};
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
@@ -111,6 +112,7 @@ fn input(of: &Snapshot, token: &Token) -> ClInput {
         name: of.name.clone(),
         bytes: Box::new(StoppableText { text, token: token.clone() }),
         length: None,
+        further: Arc::default(),
     }
 }
 

@@ -18,6 +18,7 @@ use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
 use post_job::job_file::{self, JobMark, SavedJob};
 use post_job::making::{self, ProgramMaker, ProgramOutcome, ProgramPart, ProgramRequest};
 use post_job::old_summary::OldSummary;
+use post_job::operations::{self, ProgramLines};
 use post_job::predict::Prediction;
 use post_job::session::Session;
 use post_job::settings::{
@@ -27,7 +28,7 @@ use post_job::summary::{self, SummaryJson};
 use post_job::{caller, compensate, plan_rounds, plugin_finder, predict};
 use said_settings::SaidSettings;
 use setup_sheet::SheetJob;
-use shown::ShownArguments;
+use shown::Places;
 
 const SETUP_SHEET: Role =
     Role { what: "setup sheet", remedy: "name another file with --setup-sheet" };
@@ -55,14 +56,11 @@ pub struct PostArguments {
     threads: Flags<ThreadSettings>,
 
     #[command(flatten)]
-    shown: ShownArguments,
-
-    #[command(flatten)]
     report: Flags<ReportSettings>,
 
     /// Takes the settings of an earlier run from its summary (--summary): dialect, TCP by control or post, tolerances,
-    /// error model, and --tool-length if it was given. Other flags override them. Mount, turn and other keys of the
-    /// machine file are not in a summary.
+    /// error model, where the part sat (--mount, --turn), and --tool-length if it was given. Other flags override them.
+    /// Other keys of the machine file are not in a summary.
     #[arg(long, value_name = "FILE", value_parser = file())]
     like: Option<PathArg>,
 
@@ -190,13 +188,13 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         session.findings(&other.into_iter().collect::<Vec<_>>());
     }
     maker.threads = arguments.threads.0.most();
-    let mut source = ClSource::new(session, &job.input, arguments.reads_twice(&machine))?;
+    let mut source = ClSource::of_job(session, job, arguments.reads_twice(&machine))?;
     if arguments.looks_ahead(&machine) {
         maker.look_ahead(&machine, &mut source)?;
     }
     let maker = maker;
-    let (parts, caller) = the_parts(&maker, arguments, machine)?;
-    let places = arguments.shown.places(outputs.split, parts.len());
+    let (parts, caller) = the_parts(&maker, arguments, machine, &mut source)?;
+    let places = Places::of(outputs, parts.len());
     let folders = places.folders(session)?;
     let mut texts = OutputFiles::create(session, arguments, &parts, caller.as_ref(), &places.maps)?;
     let mut outcomes = Vec::new();
@@ -290,6 +288,8 @@ fn print(
 ) {
     let name = maker.job.input.path();
     let name = name.map_or("standard input".to_owned(), |path| path.display().to_string());
+    let further = maker.job.reading.then.iter().filter_map(PathArg::path);
+    let name = further.fold(name, |name, path| format!("{name}, {}", path.display()));
     for (part, outcome) in parts.iter().zip(outcomes) {
         let read_back = outcome.verification.as_ref();
         let mut text = summary::text(&outcome.report, read_back, &name, &part.target);
@@ -312,6 +312,7 @@ fn the_parts(
     maker: &ProgramMaker<'_>,
     arguments: &PostArguments,
     machine: Machine,
+    source: &mut ClSource,
 ) -> Result<(Vec<ProgramPart>, Option<Caller>), Failure> {
     let ProgramMaker { session, job, finder, ahead, .. } = maker;
     let outputs = &arguments.outputs.0;
@@ -322,8 +323,14 @@ fn the_parts(
             let help = "--split operations or --split tools makes several";
             return Err(Diagnostic::error("caller", message).help(help).into());
         }
-        return Ok((vec![ProgramPart { lines: None, target, machine }], None));
+        let lines = operations::chosen(job, source)?;
+        return Ok((vec![ProgramPart { lines, target, machine }], None));
     };
+    if job.reading.is_chosen() {
+        let message =
+            "--split makes several programs of one whole CL file, without --then and --operations";
+        return Err(Diagnostic::error("split", message).help("leave --split out").into());
+    }
     if target == PathArg::Standard {
         return Err(Diagnostic::error(
             "split",
@@ -349,7 +356,7 @@ fn the_parts(
                 caller::end_as_subprogram(finder, &mut machine, number)?;
             }
             let target = parts::target(&target, dash, index + 1, count);
-            Ok(ProgramPart { lines: Some(lines), target, machine })
+            Ok(ProgramPart { lines: Some(ProgramLines::part(lines)), target, machine })
         })
         .collect();
     let programs = programs?;

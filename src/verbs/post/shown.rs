@@ -1,39 +1,21 @@
 //! `--map` and `--plan-pictures`: the plan of each program, shown.
 
-use clap::Args;
 use post_machine::description::Machine;
 use post_posting::plan::{PlanWatch, PlannedPoint};
 
 use super::parts;
-use post_cli::arguments::flag_values::file;
 use post_job::failure::Failure;
 use post_job::files::{AtomicFile, FileFault, JsonRows, OwnFolder, PathArg, Role};
 use post_job::plan::map::{LimitMap, MapRow};
 use post_job::plan::pictures;
 use post_job::plan::posted::{MARK, PlanReference, PlanTrace};
 use post_job::session::Session;
-use post_job::settings::Split;
+use post_job::settings::OutputSettings;
 
 const PICTURES: Role = Role { what: "plan", remedy: "name another folder with --plan-pictures" };
 
 /// What a map is to the files of a run.
 pub const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
-
-#[derive(Debug, Args)]
-pub struct ShownArguments {
-    /// Tells which limit holds the planned feed where: a row for each stretch with one line of the CL file and one limit,
-    /// with way (mm) and time (s, by the plan) from and to, limit, axis, least and largest feed (mm/min); planned cuts
-    /// alone. CSV where the name ends in .csv, else JSON; `-` is standard output, JSON. With --split one for each program:
-    /// map-1.json, map-2.json, …
-    #[arg(long, value_name = "FILE", requires = "plan", value_parser = file())]
-    map: Option<PathArg>,
-
-    /// Draws the plan into this folder, as SVG: feed, velocity, acceleration and jerk of the axes, chord error and contour
-    /// error along the way of the tip in planned cuts, limits drawn in; and tells beside them, as JSON, what is used of each
-    /// limit. With --split a folder for each program: FOLDER-1, FOLDER-2, …
-    #[arg(long, value_name = "FOLDER", requires = "plan", value_parser = file())]
-    plan_pictures: Option<PathArg>,
-}
 
 /// The places of what is shown, program by program; empty where nothing is asked for.
 pub struct Places {
@@ -44,15 +26,13 @@ pub struct Places {
 /// The files of a folder of pictures.
 pub type PictureFolder = Vec<(&'static str, String)>;
 
-impl ShownArguments {
-    /// For so many programs.
-    pub fn places(&self, split: Option<Split>, count: usize) -> Places {
-        let each = |named| parts::each(named, split, count);
-        Places { maps: each(&self.map), folders: each(&self.plan_pictures) }
-    }
-}
-
 impl Places {
+    /// Those of so many programs.
+    pub fn of(outputs: &OutputSettings, count: usize) -> Self {
+        let each = |named| parts::each(named, outputs.split, count);
+        Self { maps: each(&outputs.map), folders: each(&outputs.plan_pictures) }
+    }
+
     /// The folders of pictures.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! What verifying has found, for people.
 
 use post_machine::description::Machine;
-use post_machine::diagnostic::Severity;
+use post_machine::diagnostic::{Severity, SourceFiles};
 use post_readback::verify::WorstDeviation;
 
 use post_job::read_back::VerifiedProgram;
@@ -31,18 +31,21 @@ pub fn text(
     let axis_tolerance = tolerances[1].unwrap_or(machine.accuracy.axis_tolerance);
     rows.row(
         "tip deviation",
-        format_args!("{}, tolerance {tolerance} mm", worst(&found.tip, "mm", 6)),
+        format_args!("{}, tolerance {tolerance} mm", worst(&held.files, &found.tip, "mm", 6)),
     );
     rows.row(
         "axis deviation",
         format_args!(
             "{}, tolerance {:.4}°",
-            worst(&found.axis, "°", 5),
+            worst(&held.files, &found.axis, "°", 5),
             axis_tolerance.to_degrees()
         ),
     );
     if found.rapid.nc_line > 0 {
-        rows.row("rapid points", format_args!("passed within {}", worst(&found.rapid, "mm", 3)));
+        rows.row(
+            "rapid points",
+            format_args!("passed within {}", worst(&held.files, &found.rapid, "mm", 3)),
+        );
     }
     if !found.axis_rapids.is_none() {
         let off = worst(&found.axis_rapids, "mm", 3);
@@ -76,10 +79,13 @@ pub fn text(
     rows.lines(16)
 }
 
-fn worst(worst: &WorstDeviation, unit: &str, decimals: u8) -> String {
+fn worst(files: &SourceFiles, worst: &WorstDeviation, unit: &str, decimals: u8) -> String {
     let value = number(worst.value, decimals);
     match worst.nc_line {
         0 => format!("{value} {unit}"),
-        line => format!("{value} {unit}, in line {line} of the program, CL line {}", worst.cl_line),
+        line => format!(
+            "{value} {unit}, in line {line} of the program, CL line {}",
+            files.line(worst.cl_line)
+        ),
     }
 }

@@ -2,6 +2,9 @@
 
 use std::fs::File;
 use std::io::{self, Read};
+use std::sync::Arc;
+
+use post_machine::diagnostic::{FurtherFile, SourceFiles};
 
 use super::file_id::FileId;
 use super::{FileFault, PathArg};
@@ -15,9 +18,16 @@ pub struct ClInput {
     pub bytes: Box<dyn Read + Send>,
     /// How long it is, bytes, if it is a file.
     pub length: Option<u64>,
+    /// Files that are read behind it, as one text.
+    pub further: Arc<[FurtherFile]>,
 }
 
 impl ClInput {
+    /// The files that it is the text of.
+    pub fn files(&self) -> SourceFiles {
+        SourceFiles::new(&self.name, Arc::clone(&self.further))
+    }
+
     /// Opens a CL file. Nothing is written to it from here on.
     pub fn open(session: &Session, source: &PathArg) -> Result<Self, FileFault> {
         let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
@@ -28,6 +38,7 @@ impl ClInput {
                 name: "standard input".to_owned(),
                 bytes: Box::new(io::stdin()),
                 length: None,
+                further: Arc::default(),
             });
         };
         let fault = |error| FileFault::read(named, error);
@@ -47,6 +58,7 @@ impl ClInput {
             name,
             bytes: session.stoppable(file),
             length: metadata.is_file().then_some(metadata.len()),
+            further: Arc::default(),
         })
     }
 }

@@ -4,14 +4,19 @@ use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::joined::JoinedFiles;
 use super::temporary::Temporary;
 use super::{ClInput, FileFault, PathArg};
+use crate::failure::Failure;
 use crate::session::Session;
+use crate::settings::JobSettings;
 
 /// Where a CL file is read from, as often as it takes.
 pub struct ClSource {
     session: Session,
     argument: PathArg,
+    /// Several files.
+    joined: Option<JoinedFiles>,
     /// What a pipe or standard input held.
     copy: Option<Temporary>,
     /// What is in the memory already.
@@ -52,11 +57,25 @@ impl Read for HeldReader {
 }
 
 impl ClSource {
+    /// Of the CL files of a job; what is no file is read to its end if `again` says that it will be read more than once.
+    ///
+    /// # Errors
+    /// One of them cannot be read.
+    pub fn of_job(session: &Session, job: &JobSettings, again: bool) -> Result<Self, Failure> {
+        let mut source = Self::new(session, &job.input, again || job.reading.is_chosen())?;
+        if !job.reading.then.is_empty() {
+            let all = std::iter::once(&job.input).chain(&job.reading.then);
+            source.joined = Some(JoinedFiles::new(session, all.cloned().collect())?);
+        }
+        Ok(source)
+    }
+
     /// Of an argument; what is no file is read to its end if `again` says that it will be read more than once.
     pub fn new(session: &Session, argument: &PathArg, again: bool) -> Result<Self, FileFault> {
         let mut source = Self {
             session: session.clone(),
             argument: argument.clone(),
+            joined: None,
             copy: None,
             held: None,
             name: String::new(),
@@ -102,6 +121,7 @@ impl ClSource {
         let source = Self {
             session: session.clone(),
             argument: PathArg::Standard,
+            joined: None,
             copy: Some(copy),
             held: None,
             name,
@@ -115,6 +135,7 @@ impl ClSource {
         Self {
             session: session.clone(),
             argument: argument.clone(),
+            joined: None,
             copy: None,
             held: Some(text),
             name: name.unwrap_or_default(),
@@ -128,6 +149,7 @@ impl ClSource {
             name: self.name.clone(),
             length: Some(text.bytes.len() as u64),
             bytes: Box::new(text.open()),
+            further: Arc::default(),
         })
     }
 
@@ -136,12 +158,17 @@ impl ClSource {
         if let Some(input) = self.open_held() {
             return Ok(input);
         }
+        if let Some(joined) = &self.joined {
+            return joined.open(&self.session);
+        }
         let Some(copy) = &self.copy else {
             return ClInput::open(&self.session, &self.argument);
         };
         let name = self.name.clone();
         match copy.reopen() {
-            Ok(bytes) => Ok(ClInput { name, bytes: Box::new(bytes), length: None }),
+            Ok(bytes) => {
+                Ok(ClInput { name, bytes: Box::new(bytes), length: None, further: Arc::default() })
+            }
             Err(error) => Err(FileFault::Read { name, error }),
         }
     }
@@ -150,6 +177,9 @@ impl ClSource {
     pub fn open(&mut self) -> Result<ClInput, FileFault> {
         if let Some(input) = self.open_held() {
             return Ok(input);
+        }
+        if let Some(joined) = &self.joined {
+            return joined.open(&self.session);
         }
         let Some(copy) = &mut self.copy else {
             return ClInput::open(&self.session, &self.argument);
@@ -162,6 +192,7 @@ impl ClSource {
                 name: name.clone(),
                 length: Some(bytes.metadata()?.len()),
                 bytes: Box::new(bytes),
+                further: Arc::default(),
             })
         };
         let mut again = again;

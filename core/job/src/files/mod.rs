@@ -9,6 +9,7 @@ mod cl_input;
 mod cl_source;
 mod file_fault;
 mod file_id;
+mod joined;
 mod json_rows;
 mod naming;
 mod outcome;

@@ -121,7 +121,7 @@ enum PieceSource<'r> {
 impl<'r> ClPieces<'r> {
     /// Of a CL file, which `ahead` may read from here on if it is a file.
     pub fn new(input: ClInput, ahead: Option<&'r ReadAhead>) -> Self {
-        let ClInput { name, bytes, length } = input;
+        let ClInput { name, bytes, length, .. } = input;
         let from = match ahead.filter(|_| length.is_some()) {
             None => PieceSource::Here(Box::new(ClReader::new(bytes))),
             Some(ahead) => {

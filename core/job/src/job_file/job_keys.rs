@@ -11,7 +11,7 @@ const READ_BACK: [&str; 2] = ["offsets", "most_blocks"];
 /// Keys that stand beside the settings, each with what it means.
 pub(super) const BESIDE: [(&str, &str); 3] = [
     ("machine", "The machine: a TOML file, or the name of one in a machine folder or built in."),
-    ("cl", "The CL file."),
+    ("cl", "The CL file; several, in their order, become one program."),
     (
         "program",
         "A program of its own, [[program]]: with its CL file, and keys over those above all programs.",

@@ -39,6 +39,23 @@ impl JobProgram {
         Ok(keys)
     }
 
+    /// The same with one of its CL files alone, for each of them.
+    pub fn each_cl(&self) -> Vec<Self> {
+        let mut first = self.clone();
+        let further = first.told.extract_if(.., |setting| setting.about.name == "then");
+        let further: Vec<SettingValue> = further
+            .flat_map(|setting| match setting.value {
+                SettingValue::List(files) => files,
+                file => vec![file],
+            })
+            .collect();
+        let further = further.into_iter().map(|file| {
+            let cl = PathBuf::from(file.to_string());
+            Self { cl, ..first.clone() }
+        });
+        std::iter::once(first.clone()).chain(further).collect()
+    }
+
     /// CL file, machine and how the one is posted on the other.
     pub fn settings(&self, keys: &JobKeys, mark: Option<JobMark>) -> JobSettings {
         JobSettings {

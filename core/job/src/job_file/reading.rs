@@ -61,7 +61,8 @@ pub(super) fn text_of(session: &Session, path: &Path) -> Result<String, Failure>
 #[derive(Clone, Default)]
 struct SaidKeys {
     machine: Option<String>,
-    cl: Option<PathBuf>,
+    /// CL files in their order, at least one.
+    cl: Option<Vec<PathBuf>>,
     told: Vec<ToldSetting>,
 }
 
@@ -173,7 +174,7 @@ impl JobReading<'_> {
     /// The program that these keys mean, at `span`; none with a fault where one is missing.
     fn program(&mut self, said: SaidKeys, span: Option<Range<usize>>) -> Option<JobProgram> {
         let place = span.and_then(|span| self.place(span));
-        let SaidKeys { machine, cl, told } = said;
+        let SaidKeys { machine, cl, mut told } = said;
         let mut missing = |what: &str, help: &str| {
             if self.faults.is_empty() {
                 let message = format!("{} names no {what}", self.name);
@@ -188,7 +189,8 @@ impl JobReading<'_> {
             );
             return None;
         };
-        let Some(cl) = cl else {
+        let mut cl = cl.into_iter().flatten();
+        let Some(first) = cl.next() else {
             missing("CL file", "cl = \"part.cls\", as seen from the folder of the job file");
             return None;
         };
@@ -206,7 +208,11 @@ impl JobReading<'_> {
                 self.faults.push(setting.fault(&format!("{name} needs {needed}")));
             }
         }
-        Some(JobProgram { machine, cl, told })
+        let further: Vec<_> = cl.map(SettingValue::Path).collect();
+        if let Some(about) = JobKeys::named("then").filter(|_| !further.is_empty()) {
+            told.push(ToldSetting { about, value: SettingValue::List(further), place });
+        }
+        Some(JobProgram { machine, cl: first, told })
     }
 
     /// What a table says.
@@ -221,7 +227,11 @@ impl JobReading<'_> {
             }
             match key.get_ref().as_ref() {
                 "machine" => said.machine = self.one_line(value).map(|name| self.machine(name)),
-                "cl" => said.cl = self.one_line(value).map(|name| self.path(&name)),
+                "cl" => said.cl = self.cl_files(value),
+                "then" => {
+                    let help = "cl = [\"first.cls\", \"second.cls\"]";
+                    self.fault(key.span(), "cl has all CL files of a program".to_owned(), help);
+                }
                 name => match JobKeys::named(name) {
                     Some(about) => said.told.extend(self.setting(about, key.span(), value)),
                     None => self.unknown(name, key.span()),
@@ -248,6 +258,17 @@ impl JobReading<'_> {
     /// A path as seen from here.
     fn path(&self, named: &str) -> PathBuf {
         paths::joined(self.path.parent(), Path::new(named))
+    }
+
+    /// A CL file, or several in their order; none with a fault.
+    fn cl_files(&mut self, value: &Spanned<DeValue<'_>>) -> Option<Vec<PathBuf>> {
+        let names = match value.get_ref() {
+            DeValue::Array(items) if !items.is_empty() => {
+                items.iter().map(|item| self.one_line(item)).collect::<Option<Vec<_>>>()?
+            }
+            _ => vec![self.one_line(value)?],
+        };
+        Some(names.iter().map(|name| self.path(name)).collect())
     }
 
     /// A text that stays in its line.

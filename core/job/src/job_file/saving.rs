@@ -43,10 +43,21 @@ pub fn text(job: &SavedJob<'_>, target: &PathArg) -> Result<String, Box<Diagnost
         false => job.machine.to_owned(),
     };
     line(&mut text, "machine", &json!(machine).to_string());
-    line(&mut text, "cl", &json!(paths::relative(cl, &folder)).to_string());
+    let first = paths::relative(cl, &folder);
+    let further = job.said.iter().find(|(about, _)| about.name == "then");
+    let cl = match further.map(|(_, value)| value) {
+        Some(SettingValue::List(further)) => {
+            let further =
+                further.iter().map(|file| relative(Path::new(&file.to_string()), &folder));
+            json!(std::iter::once(first).chain(further).collect::<Vec<_>>())
+        }
+        _ => json!(first),
+    };
+    line(&mut text, "cl", &cl.to_string());
     let mut set = Vec::new();
     for (about, value) in job.said {
         match (about.name, written(about, value, &folder)) {
+            ("then", _) => {}
             ("set", _) => set.extend(texts(value)),
             ("plugins", _) => {
                 text.push_str(

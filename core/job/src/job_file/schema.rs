@@ -9,12 +9,13 @@ use crate::settings::{About, SettingForm};
 /// The schema.
 pub fn schema() -> Value {
     let mut keys: Map<String, Value> = JobKeys::about()
-        .filter(|about| about.name != "plugins")
+        .filter(|about| !["plugins", "then"].contains(&about.name))
         .map(|about| (about.name.to_owned(), setting(about)))
         .collect();
     for (name, doc) in BESIDE {
         keys.insert(name.to_owned(), json!({ "description": doc, "type": "string" }));
     }
+    keys.insert("cl".to_owned(), several(&keys["cl"]));
     keys.remove("program");
     let program = json!({
         "type": "object",
@@ -35,6 +36,17 @@ pub fn schema() -> Value {
     })
 }
 
+/// One of a kind, or a list of them.
+fn several(kind: &Value) -> Value {
+    let mut kind = kind.clone();
+    let doc = kind.as_object_mut().and_then(|kind| kind.remove("description"));
+    let mut schema = json!({ "anyOf": [kind, { "type": "array", "items": kind }] });
+    if let Some(doc) = doc {
+        schema["description"] = doc;
+    }
+    schema
+}
+
 fn setting(about: &About) -> Value {
     let kind = match about.form {
         SettingForm::Flag => json!({ "type": "boolean" }),
@@ -48,7 +60,7 @@ fn setting(about: &About) -> Value {
         SettingForm::Text => json!({ "type": ["number", "string", "array"] }),
     };
     let mut schema = match about.many && about.name != "set" {
-        true => json!({ "anyOf": [kind, { "type": "array", "items": kind }] }),
+        true => several(&kind),
         false => kind,
     };
     schema["description"] = json!(about.text());

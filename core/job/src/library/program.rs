@@ -13,6 +13,7 @@ use crate::files::{self, AtomicFile, ClSource, PathArg, Role};
 use crate::job_file::{self, JobFile, JobProgram};
 use crate::making::{self, ProgramInput, ProgramMaker, ProgramPart, ProgramRequest, ProgramSink};
 use crate::nc_program::Reread;
+use crate::operations;
 use crate::plugin_finder;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings, ReadingSettings, ThreadSettings, tell};
@@ -144,10 +145,11 @@ impl Request {
     ) -> Result<(ProgramMaker<'a>, ProgramPart, ClSource), Failure> {
         let (mut maker, machine) = ProgramMaker::open(session, &self.job, &self.making)?;
         maker.threads = self.threads.most();
-        let mut source = ClSource::new(session, &self.job.input, true)?;
+        let mut source = ClSource::of_job(session, &self.job, true)?;
         maker.look_ahead_where_needed(&machine, &mut source)?;
         let target = making::target(&self.job, self.output.as_ref(), &machine, &maker.finder)?;
-        Ok((maker, ProgramPart { lines: None, target, machine }, source))
+        let lines = operations::chosen(&self.job, &mut source)?;
+        Ok((maker, ProgramPart { lines, target, machine }, source))
     }
 
     /// What a program that is made is asked with.
@@ -278,7 +280,7 @@ impl MadeProgram {
     pub fn verify(&self, stop: &StopSignal) -> Result<ProgramFindings, Refusal> {
         let held = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
-            let mut source = ClSource::new(session, &self.request.job.input, true)?;
+            let mut source = ClSource::of_job(session, &self.request.job, true)?;
             let program =
                 ProgramInput { name: self.name(), text: Box::new(Cursor::new(&self.text)) };
             let held = maker.read_back(&self.part, self.moved, &mut source, program)?;
@@ -304,7 +306,7 @@ impl MadeProgram {
     ) -> Result<ProgramFindings, Refusal> {
         let predicted = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
-            let mut source = ClSource::new(session, &self.request.job.input, true)?;
+            let mut source = ClSource::of_job(session, &self.request.job, true)?;
             let program =
                 ProgramInput { name: self.name(), text: Box::new(Cursor::new(&self.text)) };
             let predicted = maker.predict(&self.part, period, &mut source, None, program)?;

@@ -17,7 +17,7 @@ use crate::read_back;
 /// The file cannot be read, or something in it cannot be understood.
 pub fn tools(asked: &PredictionSetup<'_>, source: &mut ClSource) -> Result<Vec<ClTool>, Failure> {
     let input = source.open()?;
-    let settings = read_back::course_settings(asked.arguments, asked.machine, &input.name);
+    let settings = read_back::course_settings(asked.arguments, asked.machine, &input);
     let mut course = ClCourse::new(settings, input.bytes);
     let mut faults: Vec<Diagnostic> = Vec::new();
     loop {
@@ -45,7 +45,7 @@ pub fn open<'f>(
     faults: &'f mut Vec<Diagnostic>,
 ) -> Result<(Box<dyn ReferencePath + 'f>, String), Failure> {
     let input = source.open()?;
-    let settings = read_back::course_settings(asked.arguments, asked.machine, &input.name);
+    let settings = read_back::course_settings(asked.arguments, asked.machine, &input);
     let course = ClCourse::new(settings, input.bytes);
     let course = CourseWindow::new(course, asked.lines.clone());
     let legs = Legs::new(course, asked.machine.control_point.along, faults);

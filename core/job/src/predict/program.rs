@@ -16,6 +16,7 @@ use crate::columns::CsvTable;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, FolderMark, OwnFolder, PathArg, Role};
 use crate::nc_program::{self, ProgramFile};
+use crate::operations;
 use crate::report::{ClWindow, ExtraColumns, MotionRows, PredictedLines};
 use crate::result_files::ResultFiles;
 use crate::session::Session;
@@ -97,6 +98,18 @@ pub fn predict_program(
         Some(file) => Some(nc_program::offsets(session, file, &machine)?),
         None => None,
     };
+    let mut source = match &request.against {
+        Some(_) => Some(ClSource::of_job(session, &request.job, true)?),
+        None if request.job.reading.is_chosen() => {
+            let message = "--then and --operations say of CL files what the program is made of, and none is named";
+            return Err(Diagnostic::error("option", message).help("name it with --against").into());
+        }
+        None => None,
+    };
+    let chosen = match &mut source {
+        Some(source) => operations::chosen(&request.job, source)?,
+        None => None,
+    };
     let asked = PredictionSetup {
         session,
         arguments: &request.job,
@@ -105,7 +118,7 @@ pub fn predict_program(
         offsets,
         limits: Limits { blocks: request.most_blocks, ..Limits::default() },
         period: request.period,
-        lines: None,
+        lines: chosen.map(|lines| lines.ranges),
         threads: request.threads.most(),
     };
     let mut overlay = match &request.measured {
@@ -114,10 +127,6 @@ pub fn predict_program(
     };
     let csv = request.csv.as_ref().map(|csv| (SET_POINTS, csv));
     let mut texts = ResultFiles::create(session, csv, request.summary.as_ref(), &request.report)?;
-    let mut source = match &request.against {
-        Some(file) => Some(ClSource::new(session, file, true)?),
-        None => None,
-    };
     let csv = texts.table.as_mut();
     let mut watch = SetPointOutputs {
         overlay: overlay.as_mut(),

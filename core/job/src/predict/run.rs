@@ -47,7 +47,7 @@ pub struct PredictionSetup<'a> {
     /// Time between set-points, s, over the machine file's.
     pub period: Option<f64>,
     /// Lines of the CL file that the program is made of; none: all.
-    pub lines: Option<Range<u64>>,
+    pub lines: Option<Vec<Range<u64>>>,
     /// Threads that it is predicted on at most.
     pub threads: NonZeroUsize,
 }

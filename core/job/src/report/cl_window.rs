@@ -54,7 +54,7 @@ impl ClWindow {
         source: &ClSource,
     ) -> Result<Self, Failure> {
         let input = source.open_beside()?;
-        let settings = read_back::course_settings(arguments, machine, &input.name);
+        let settings = read_back::course_settings(arguments, machine, &input);
         Self::new(machine, settings, input.bytes)
     }
 

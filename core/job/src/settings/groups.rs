@@ -41,6 +41,14 @@ settings! {
     /// How a CL file is read.
     ReadingSettings, Some("Reading");
 
+    /// A further CL file of the same program, read behind the first: each begins as a file of its own, the tool retracted
+    /// in between. Repeatable, in their order.
+    many then: PathArg = FILE, "FILE";
+
+    /// An operation that the program is made of, by its name (`TOOL PATH`; `T3` in files without any) or its number in the
+    /// order of the CL files, from 1; the others are left out. Repeatable; the order stays that of the CL files.
+    many operations: String = NAME, "NAME";
+
     /// Units of the numbers in the CL file; overrides what the file says.
     one units: Units = UNITS, "UNITS";
 
@@ -119,6 +127,13 @@ settings! {
     many plugins: PathBuf = FOLDER, "FOLDER", { heading: Some("Plugins") };
 }
 
+impl ReadingSettings {
+    /// Operations are chosen, or several files are read.
+    pub fn is_chosen(&self) -> bool {
+        !self.then.is_empty() || !self.operations.is_empty()
+    }
+}
+
 impl MachineSettings {
     /// What is set over the machine file: `set` first, then the short ones, which win.
     pub fn settings(&self) -> Vec<Setting> {
@@ -183,6 +198,17 @@ settings! {
     /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axis motion and contour
     /// error; with =FILE as JSON too (several programs give a list).
     one predict: Option<PathArg> = FILE_IF_ANY, "FILE";
+
+    /// Tells which limit holds the planned feed where: a row for each stretch with one line of the CL file and one limit,
+    /// with way (mm) and time (s, by the plan) from and to, limit, axis, least and largest feed (mm/min); planned cuts
+    /// alone. CSV where the name ends in .csv, else JSON; `-` is standard output, JSON. With --split one for each program:
+    /// map-1.json, map-2.json, …
+    one map: PathArg = FILE, "FILE", { requires: Some("plan") };
+
+    /// Draws the plan into this folder, as SVG: feed, velocity, acceleration and jerk of the axes, chord error and contour
+    /// error along the way of the tip in planned cuts, limits drawn in; and tells beside them, as JSON, what is used of each
+    /// limit. With --split a folder for each program: FOLDER-1, FOLDER-2, …
+    one plan_pictures: PathArg = FILE, "FOLDER", { requires: Some("plan") };
 }
 
 settings! {

@@ -15,6 +15,7 @@ use super::result_files::ResultFiles;
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job_file::is_marked;
+use crate::operations;
 use crate::session::Session;
 use crate::settings::{JobSettings, ReportSettings, ThreadSettings};
 use page::VerifyPage;
@@ -79,7 +80,8 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
         Some(file) => Some(nc_program::offsets(session, file, &machine)?),
         None => None,
     };
-    let mut source = ClSource::new(session, &job.input, true)?;
+    let mut source = ClSource::of_job(session, job, true)?;
+    let chosen = operations::chosen(job, &mut source)?;
     let map = request.map.as_ref().map(|map| (MAP, map));
     let mut texts = ResultFiles::create(session, map, request.summary.as_ref(), &request.report)?;
     let reading = ReadingSetup {
@@ -95,7 +97,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
         any_coolant: request.any_coolant,
         any_work_offset: request.any_work_offset,
         own: request.posted || is_marked(&request.program),
-        lines: None,
+        lines: chosen.map(|lines| lines.ranges),
         threads: request.threads.most(),
     };
     let rows = match &texts.page {

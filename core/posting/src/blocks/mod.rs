@@ -317,9 +317,11 @@ impl<'a> BlockStage<'a> {
     fn command(&mut self, line: u64, command: &Command, out: &mut BlockSink<'_>) {
         self.end_run(out);
         match command {
-            Command::Tool(_) | Command::Home | Command::WorkOffset(_) | Command::Smoothing(_) => {
-                self.depart(line, out)
-            }
+            Command::Tool(_)
+            | Command::Home
+            | Command::Retract { .. }
+            | Command::WorkOffset(_)
+            | Command::Smoothing(_) => self.depart(line, out),
             // Where the tool stands after it is not known.
             Command::Subprogram(_) => {
                 self.last = None;

@@ -407,7 +407,9 @@ impl<'a> ConfigurationStage<'a> {
                 self.lengths.work_offset(*number);
                 self.park(&[]);
             }
-            Command::Subprogram(_) | Command::Smoothing(_) => self.park(&[]),
+            Command::Subprogram(_) | Command::Smoothing(_) | Command::Retract { .. } => {
+                self.park(&[]);
+            }
             Command::SurfaceSpeed { most, .. } => {
                 self.speed = None;
                 match self.machine.spindle.limit(*most) {

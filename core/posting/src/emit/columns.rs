@@ -36,6 +36,7 @@ impl EmitStage<'_> {
     /// As few events as there can be: one ends where the feeds become of another kind, and with a block whose place in
     /// the program is told.
     fn take_columns(&mut self, run: &RunColumns, timed: &TimedRun) {
+        self.extremes.note_run(run);
         self.extremes.reach_all(&self.last, run);
         let worst = self.extremes.mark_cuts(run);
         let words = self.writer.words();
@@ -69,6 +70,7 @@ impl EmitStage<'_> {
             let joints = run.joints_at(lane);
             let line = run.lines[lane];
             self.extremes.reach(&joints);
+            self.extremes.note_line(line);
             self.extremes.go(&self.last, &joints);
             let bound = run.bound(lane);
             let deviation = DeviationBound { tip: bound.tip + 0.0, ..bound };

@@ -26,6 +26,8 @@ pub(crate) struct Extremes {
     pub least: Joints,
     /// Largest axis values.
     pub most: Joints,
+    /// Lines of the CL file that lead to both, where they are wanted.
+    lines: Option<Box<ExtremeLines>>,
     /// Way of each axis over all blocks, mm or radians.
     pub travel: Joints,
     /// Where the largest deviations stand in the batch that is not written yet: index of the event.
@@ -34,14 +36,33 @@ pub(crate) struct Extremes {
     batches: [u64; 3],
 }
 
+/// Lines of the CL file that lead to the extremes.
+#[derive(Clone, Debug)]
+struct ExtremeLines {
+    least: Joints,
+    most: Joints,
+    /// Of the least and the largest value of each axis.
+    lines: [[u64; 2]; MAX_AXES],
+}
+
+impl ExtremeLines {
+    const NONE: Self = Self {
+        least: [f64::INFINITY; MAX_AXES],
+        most: [f64::NEG_INFINITY; MAX_AXES],
+        lines: [[0; 2]; MAX_AXES],
+    };
+}
+
 impl Extremes {
-    pub(super) fn new() -> Self {
+    /// None so far; `lines`: those that lead to the least and largest axis values are wanted.
+    pub(super) fn new(lines: bool) -> Self {
         Self {
             blocks: 0,
             curves: 0,
             deviations: [ReportedDeviation::default(); 3],
             least: [f64::INFINITY; MAX_AXES],
             most: [f64::NEG_INFINITY; MAX_AXES],
+            lines: lines.then(|| Box::new(ExtremeLines::NONE)),
             travel: [0.0; MAX_AXES],
             marks: [None; 3],
             batches: [0; 3],
@@ -171,6 +192,38 @@ impl Extremes {
             self.least[index] = if *value < least { *value } else { least };
             self.most[index] = if *value > most { *value } else { most };
         }
+    }
+
+    /// What was covered since the last call is that of a line.
+    #[inline]
+    pub(super) fn note_line(&mut self, line: u64) {
+        let Some(noted) = &mut self.lines else {
+            return;
+        };
+        for joint in 0..MAX_AXES {
+            if self.least[joint] < noted.least[joint] {
+                (noted.least[joint], noted.lines[joint][0]) = (self.least[joint], line);
+            }
+            if self.most[joint] > noted.most[joint] {
+                (noted.most[joint], noted.lines[joint][1]) = (self.most[joint], line);
+            }
+        }
+    }
+
+    /// [`Extremes::note_line`] of all blocks of a run.
+    pub(super) fn note_run(&mut self, run: &RunColumns) {
+        if self.lines.is_none() {
+            return;
+        }
+        for lane in 0..run.count {
+            self.cover(&run.joints_at(lane));
+            self.note_line(run.lines[lane]);
+        }
+    }
+
+    /// Lines that lead to the least and the largest value of an axis; zero where they were not wanted.
+    pub(crate) fn lines_of(&self, joint: usize) -> [u64; 2] {
+        self.lines.as_ref().map(|noted| noted.lines[joint]).unwrap_or_default()
     }
 
     /// Adds a block's way of each axis.

@@ -285,6 +285,17 @@ impl EmitStage<'_> {
         }
     }
 
+    /// Retracted, spindle and coolant at rest; `forgets`: until they are switched on.
+    pub(super) fn apart(&mut self, line: u64, forgets: bool) {
+        self.leave(line);
+        self.rest(line);
+        self.spindle.waits = None;
+        if forgets {
+            (self.spindle.commanded, self.spindle.tool_changed) = (None, false);
+            (self.coolant.commanded, self.coolant.due) = (None, false);
+        }
+    }
+
     /// Home: retracted, and parked.
     pub(super) fn go_home(&mut self, line: u64) {
         self.leave(line);

@@ -96,7 +96,7 @@ impl<'a> EmitStage<'a> {
             base: machine,
             writer,
             texts: ProgramTexts::new(machine, job),
-            extremes: Extremes::new(),
+            extremes: Extremes::new(machine.is_opened()),
             last: Joints::default(),
             words,
             clear: false,
@@ -122,7 +122,7 @@ impl<'a> EmitStage<'a> {
         };
         emit.say_bare(0, TextPlace::FirstLines);
         emit.writer.push(0, Event::Start);
-        if let Some(text) = &job.remark {
+        for text in &job.remarks {
             emit.writer.push(0, Event::Comment { text });
         }
         emit.say(0, TextPlace::Header);
@@ -162,7 +162,10 @@ impl<'a> EmitStage<'a> {
                     self.end_cycle(*line);
                     self.placed_block(&curve.block, Some(&curve.printed));
                 }
-                StreamItem::Hole(hole) => self.hole(hole),
+                StreamItem::Hole(hole) => {
+                    self.hole(hole);
+                    self.extremes.note_line(hole.line);
+                }
                 StreamItem::Command { line, command } => {
                     self.end_cycle(*line);
                     self.command(*line, command);
@@ -221,6 +224,7 @@ impl<'a> EmitStage<'a> {
     fn placed_block(&mut self, block: &MotionBlock, printed: Option<&PrintedCurve>) {
         let before = self.writer.next();
         self.block(block, printed);
+        self.extremes.note_line(block.line);
         self.writer.place(before);
     }
 
@@ -364,6 +368,7 @@ impl<'a> EmitStage<'a> {
             Command::Stop => Event::Stop,
             Command::OptionalStop => Event::OptionalStop,
             Command::Home => return self.go_home(line),
+            Command::Retract { forgets } => return self.apart(line, *forgets),
         };
         self.writer.push(line, event);
     }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::description::{Cycles, Machine};
-use post_machine::diagnostic::{Diagnostic, Short};
+use post_machine::diagnostic::{Diagnostic, Short, SourceFiles};
 use post_plugin::{Capabilities, Cycle};
 
 use crate::curve::{CurveMove, CurveMoves, CurvePolicy, CurveShape};
@@ -83,7 +83,7 @@ pub fn expanded(
     steps: &[(u64, ProgramStep)],
     chord_tolerance: f64,
 ) -> (Vec<StreamItem<PathMove>>, Vec<Diagnostic>) {
-    let findings = Findings::new("");
+    let findings = Findings::new(SourceFiles::default());
     let mut stage = ExpandStage {
         chord_tolerance,
         tip: None,

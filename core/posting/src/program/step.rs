@@ -91,6 +91,11 @@ pub enum Command {
     OptionalStop,
     /// The tool is retracted and the axes are parked.
     Home,
+    /// The tool is retracted, spindle and coolant rest, and it comes near anew.
+    Retract {
+        /// They stay at rest until they are switched on; else they are as before once it comes near.
+        forgets: bool,
+    },
 }
 
 impl Command {
@@ -100,6 +105,7 @@ impl Command {
             self,
             Self::Tool(_)
                 | Self::Home
+                | Self::Retract { .. }
                 | Self::From { .. }
                 | Self::Index { .. }
                 | Self::Head(_)

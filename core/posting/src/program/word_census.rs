@@ -74,11 +74,6 @@ impl WordCensus {
         })
     }
 
-    /// How often a word was met.
-    pub(crate) fn times(&self, word: &str) -> u64 {
-        self.counts.get(word).map_or(0, |count| count.count)
-    }
-
     /// Words that say nothing to a machine, and how often.
     pub(crate) fn ignored(&self) -> impl Iterator<Item = (&str, u64)> {
         self.counts

@@ -264,7 +264,7 @@ tolerance = 0.02
             changes: vec![tool(3), tool(5)],
             ..ProgramPreview::default()
         }),
-        remark: None,
+        remarks: Vec::new(),
     };
     let of = |name: &str| format!("TOOL PATH/{name},TOOL,T;{CUT};END-OF-PATH");
     let cl = format!("LOADTL/3;{};SELECT/TOOL,9;LOADTL/5;{}", of("A"), of("B) M30 ("));

@@ -1,4 +1,4 @@
-//! A part of a course as a course of its own: what `post --split` makes a program of.
+//! Parts of a course as a course of its own: what `post --split` and `--operations` make a program of.
 
 use std::ops::Range;
 
@@ -12,15 +12,17 @@ use crate::{MotionKind, ProgramEvent};
 pub struct CourseWindow<C> {
     course: C,
     /// None: all.
-    lines: Option<Range<u64>>,
+    lines: Option<Vec<Range<u64>>>,
+    /// The range that is read or comes next.
+    range: usize,
     /// Something moved in the window.
     moved: bool,
 }
 
 impl<C> CourseWindow<C> {
-    /// What the lines of `course` ask for; without lines all of it.
-    pub fn new(course: C, lines: Option<Range<u64>>) -> Self {
-        Self { course, lines, moved: false }
+    /// What the lines of `course` ask for, in some ranges; without any all of it.
+    pub fn new(course: C, lines: Option<Vec<Range<u64>>>) -> Self {
+        Self { course, lines, range: 0, moved: false }
     }
 }
 
@@ -38,7 +40,13 @@ impl<C: Course> Course for CourseWindow<C> {
                 CourseItem::Reach(reach) => reach.line,
                 CourseItem::Away { line } | CourseItem::Event { line, .. } => *line,
             };
-            let inside = lines.contains(&line);
+            if lines.get(self.range).is_some_and(|lines| lines.end <= line) {
+                self.range +=
+                    lines[self.range..].iter().take_while(|lines| lines.end <= line).count();
+                self.moved = false;
+            }
+            let lines = lines.get(self.range);
+            let inside = lines.is_some_and(|lines| lines.contains(&line));
             match item {
                 // What was switched before still holds.
                 CourseItem::Event {
@@ -46,9 +54,10 @@ impl<C: Course> Course for CourseWindow<C> {
                         ProgramEvent::ToolChange { .. }
                         | ProgramEvent::Spindle(_)
                         | ProgramEvent::Coolant(_)
-                        | ProgramEvent::Compensation { .. },
+                        | ProgramEvent::Compensation { .. }
+                        | ProgramEvent::WorkOffset(_),
                     ..
-                } if line < lines.end => return Ok(Some(item)),
+                } if lines.is_some() => return Ok(Some(item)),
                 // How the tool comes to its first point is nobody's business.
                 CourseItem::Piece(piece)
                     if inside && !self.moved && piece.kind == MotionKind::Rapid =>

@@ -3,8 +3,11 @@
 use std::f64::consts::TAU;
 
 use post_machine::description::{Axis, Machine};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::MAX_AXES;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, LinearMotion, Solver, TcpBlock, Trace};
+use post_machine::part_anywhere::{AxisWay, HELP};
 
 use crate::{Curve, Interpolation, Motion, MotionKind};
 
@@ -46,8 +49,45 @@ pub(crate) struct AxisLimitCheck {
     slowness: Joints,
     /// Some axis has a largest feed.
     limited: bool,
-    /// Nobody says where the part sits.
-    anywhere: bool,
+    /// Nobody says where the part sits: the ways of the axes.
+    anywhere: Option<Box<PartWays>>,
+}
+
+/// Ways of the axes in words of the part, on a machine whose part may sit anywhere.
+#[derive(Clone, Debug)]
+struct PartWays {
+    /// The axis was moved last by words of the part: those of the machine lead elsewhere on each mount.
+    of_part: [bool; MAX_AXES],
+    least: Joints,
+    most: Joints,
+    /// Lines of the program that lead to both.
+    lines: [[u64; 2]; MAX_AXES],
+}
+
+impl PartWays {
+    const NONE: Self = Self {
+        of_part: [false; MAX_AXES],
+        least: [f64::INFINITY; MAX_AXES],
+        most: [f64::NEG_INFINITY; MAX_AXES],
+        lines: [[0; 2]; MAX_AXES],
+    };
+
+    fn take(&mut self, motion: &Motion, [least, most]: [&Joints; 2]) {
+        for joint in 0..MAX_AXES {
+            if motion.from.joints[joint] != motion.to.joints[joint] {
+                self.of_part[joint] = !motion.machine;
+            }
+            if !self.of_part[joint] {
+                continue;
+            }
+            if least[joint] < self.least[joint] {
+                (self.least[joint], self.lines[joint][0]) = (least[joint], motion.line);
+            }
+            if most[joint] > self.most[joint] {
+                (self.most[joint], self.lines[joint][1]) = (most[joint], motion.line);
+            }
+        }
+    }
 }
 
 impl AxisLimitCheck {
@@ -56,19 +96,19 @@ impl AxisLimitCheck {
         Self {
             slowness,
             limited: slowness.iter().any(|slowness| *slowness > 0.0),
-            anywhere: machine.part_sits_anywhere(),
+            anywhere: machine.part_sits_anywhere().then(|| Box::new(PartWays::NONE)),
         }
     }
 
     /// An axis leaves its travel; `bend` is [`bend_between_words`] of the motion.
     pub fn over_travel(
-        &self,
+        &mut self,
         machine: &Machine,
         motion: &Motion,
         bend: Option<f64>,
     ) -> Option<AxisFault> {
         if motion.way == Interpolation::Axes {
-            return self.beyond(machine, [&motion.to.joints; 2]);
+            return self.beyond(machine, motion, [&motion.to.joints; 2]);
         }
         let (mut least, mut most) = (motion.to.joints, motion.to.joints);
         match &motion.way {
@@ -98,13 +138,19 @@ impl AxisLimitCheck {
                 }
             }
         }
-        self.beyond(machine, [&least, &most])
+        self.beyond(machine, motion, [&least, &most])
     }
 
     /// The first axis whose least or largest value lies beyond its travel.
     #[inline]
-    fn beyond(&self, machine: &Machine, [least, most]: [&Joints; 2]) -> Option<AxisFault> {
-        if self.anywhere {
+    fn beyond(
+        &mut self,
+        machine: &Machine,
+        motion: &Motion,
+        [least, most]: [&Joints; 2],
+    ) -> Option<AxisFault> {
+        if let Some(ways) = &mut self.anywhere {
+            ways.take(motion, [least, most]);
             return None;
         }
         for (joint, axis) in machine.axes.iter().enumerate() {
@@ -118,6 +164,34 @@ impl AxisLimitCheck {
             }
         }
         None
+    }
+
+    /// What is to be said of travel at the end, where the part may sit anywhere: that it fits nowhere, with the line that
+    /// says so, or how much the program needs.
+    pub fn part_place(&self, machine: &Machine) -> Option<(u64, Diagnostic)> {
+        let found = self.anywhere.as_ref()?;
+        let mut outside = Vec::new();
+        for (joint, axis) in machine.axes.iter().enumerate() {
+            let ends = [found.least[joint], found.most[joint]];
+            if ends[0] > ends[1] {
+                continue;
+            }
+            let ends = ends.map(|end| axis.reading(end));
+            let travel = axis.travel.map(|travel| travel.map(|end| axis.reading(end)));
+            let way = AxisWay { name: &axis.name, ends, travel };
+            if way.is_too_long() {
+                let lines = found.lines[joint];
+                let [first, last] = lines.map(|line| line.to_string());
+                return Some((lines[0].max(lines[1]), way.too_long([&first, &last])));
+            }
+            outside.extend(way.outside(machine));
+        }
+        let message = format!(
+            "nobody says where the part sits; this much travel the program needs: {}",
+            outside.join("; ")
+        );
+        let told = Diagnostic::warning("part-place", message).help(HELP);
+        (!outside.is_empty()).then_some((0, told))
     }
 
     /// An axis passes its largest feed, if the control does what the program says; `bend` is [`bend_between_words`] of the

@@ -39,7 +39,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Rapid};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Severity, SourceFiles};
 use post_machine::kinematics::Joints;
 use post_plugin::Lengths;
 
@@ -103,6 +103,8 @@ pub struct VerifyRules {
     pub solutions: bool,
     /// Each line of the program is told with its deviations; else some are told without.
     pub rows: bool,
+    /// The files of the course: what messages call its lines.
+    pub files: SourceFiles,
     /// Most faults that are told apart; then the check is given up.
     pub most_faults: usize,
 }
@@ -125,6 +127,7 @@ impl VerifyRules {
             linear_rapids: machine.rapid(false) == Rapid::Linear,
             feed_place: 0.0,
             planned: false,
+            files: SourceFiles::default(),
             coolants: true,
             own: false,
             solutions: false,
@@ -339,6 +342,12 @@ impl<'m, C: Course> Verifier<'m, C> {
             self.look_at_the_rest();
             self.tell_change(None);
             self.tell_end();
+        }
+        match self.axes.part_place(self.machine) {
+            Some((line, told)) if told.severity == Severity::Error => {
+                self.fault_at(told.code, told.message, Some(BlockPlace::of_line(line)), None, None);
+            }
+            told => self.found.part_place = told.map(|(_, told)| told),
         }
         self.found
     }

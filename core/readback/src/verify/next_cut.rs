@@ -2,7 +2,7 @@
 
 use super::detour::Detour;
 use super::place::{PlaceDistance, ShareSpan, ToolPlace, free};
-use super::report::BlockPlace;
+use super::report::{BlockPlace, lines_of};
 use super::sweep::StrayStretch;
 use super::track::{ElementKind, MOST};
 use super::{Verifier, state};
@@ -220,6 +220,9 @@ impl<C: Course> Verifier<'_, C> {
             (None, None) => return,
         };
         let message = match lines {
+            lines if self.rules.files.is_joined() => {
+                format!("what {} asks for {what}", lines_of(&self.rules.files, lines))
+            }
             [from, to] if from == to => format!("line {from} of the CL file {what}"),
             [from, to] => format!("what lines {from} to {to} of the CL file ask for {what}"),
         };
@@ -370,9 +373,11 @@ impl<C: Course> Verifier<'_, C> {
         }
         for (lines, what) in lines.into_iter().zip(["cut", "passed at rapid"]) {
             if let Some([from, to]) = lines {
-                let message = format!(
-                    "the program ends, and what lines {from} to {to} of the CL file ask for is not {what}"
-                );
+                let asked = match self.rules.files.is_joined() {
+                    true => format!("{} asks", lines_of(&self.rules.files, [from, to])),
+                    false => format!("lines {from} to {to} of the CL file ask"),
+                };
+                let message = format!("the program ends, and what {asked} for is not {what}");
                 self.fault_at("missing", message, None, Some(from), None);
             }
         }

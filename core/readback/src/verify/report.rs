@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use post_machine::diagnostic::{Diagnostic, SourcePlace};
+use post_machine::diagnostic::{Diagnostic, SourceFiles, SourcePlace};
 use serde::Serialize;
 
 use crate::Motion;
@@ -46,6 +46,9 @@ pub struct Verification {
     /// What still runs where a tool is changed, and the CL file does not have it off: a control may stop it by itself.
     #[serde(skip)]
     pub left_on: Vec<LeftOn>,
+    /// How much travel the program needs, where nobody says where the part sits and not all of it lies inside.
+    #[serde(skip)]
+    pub part_place: Option<Diagnostic>,
     /// Times that the tool left a cut and came back to where it left.
     pub excursions: u64,
     /// Cuts that are slower than the course asks, because an axis could not go faster, the control takes no larger F by
@@ -132,9 +135,10 @@ pub struct Fault {
 
 impl Fault {
     /// The fault as a message about a line of the program `file`, of which `text` is the line's text.
-    pub fn diagnostic(&self, file: &str, text: &str, course: &str) -> Diagnostic {
+    pub fn diagnostic(&self, file: &str, text: &str, course: &SourceFiles) -> Diagnostic {
         let mut message = self.message.clone();
         if let Some(line) = self.cl_line {
+            let (course, line) = course.locate(line);
             message.push_str(&format!(" ({course}, line {line})"));
         }
         if self.count > 1 {
@@ -170,4 +174,12 @@ pub struct BlockReport {
     /// What makes it slower than the course asks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limited_by: Option<Cow<'static, str>>,
+}
+
+/// Lines of a course of several files, as a sentence has them.
+pub(super) fn lines_of(files: &SourceFiles, [from, to]: [u64; 2]) -> String {
+    match from == to {
+        true => format!("line {}", files.line(from)),
+        false => format!("from line {} to line {}", files.line(from), files.line(to)),
+    }
 }

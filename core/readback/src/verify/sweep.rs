@@ -8,7 +8,7 @@
 //! off, and it stays wide until the program is back on the course.
 
 use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
-use super::report::BlockPlace;
+use super::report::{BlockPlace, lines_of};
 use super::track::ElementKind;
 use super::{COMPUTED, Verifier, state};
 use crate::Motion;
@@ -236,10 +236,13 @@ impl<C: Course> Verifier<'_, C> {
             true => format!("line {from}"),
             false => format!("lines {from} to {to}"),
         };
+        let asked = match self.rules.files.is_joined() {
+            true => lines_of(&self.rules.files, stray.asked),
+            false => format!("{} of the CL file", lines(stray.asked[0], stray.asked[1])),
+        };
         let message = format!(
-            "off the CL path by {off} in {} of the program, {} of the CL file; allowed are {} mm and {:.3}°",
+            "off the CL path by {off} in {} of the program, {asked}; allowed are {} mm and {:.3}°",
             lines(stray.line, stray.last),
-            lines(stray.asked[0], stray.asked[1]),
             self.rules.tolerance,
             self.rules.axis_tolerance.to_degrees(),
         );

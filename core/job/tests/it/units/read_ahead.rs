@@ -1,6 +1,7 @@
 //! A CL file that is read ahead gives the pieces that it gives where it is not.
 
 use std::io::{self, Read};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
@@ -42,7 +43,8 @@ fn file(rng: &mut Rng) -> Vec<u8> {
 fn input(bytes: &[u8], left: usize, is_file: bool) -> ClInput {
     let bytes = io::Cursor::new(bytes.to_vec());
     let length = is_file.then_some(bytes.get_ref().len() as u64);
-    ClInput { name: "part.cls".to_owned(), bytes: Box::new(Failing { bytes, left }), length }
+    let bytes = Box::new(Failing { bytes, left });
+    ClInput { name: "part.cls".to_owned(), bytes, length, further: Arc::default() }
 }
 
 /// Every piece, as text that tells it apart, with the bytes up to its end.

@@ -17,7 +17,7 @@ impl ClInterpreter {
     pub(super) fn after_fini(&mut self, record: &Record<'_>) {
         if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
             self.count("FINI", record, WordUsage::Used);
-            if self.census.times("FINI") == 2 {
+            if !std::mem::replace(&mut self.told_after_fini, true) {
                 self.warn(record, "after-fini", "records behind FINI are left out".to_owned());
             }
         }

@@ -6,6 +6,7 @@ mod curves;
 mod cycles;
 mod ending;
 mod feeds;
+mod files;
 mod frames;
 mod modal;
 mod moves;
@@ -30,6 +31,7 @@ use super::limits::{LONGEST_DWELL, MOST_WORDS, direction};
 use super::word_census::WordCensus;
 use super::{Command, MoveFeed, ProgramStep};
 use cam_system::CamSystem;
+use files::LeftByFile;
 use frames::millimetres;
 use modal::{FileCompensation, FileCycles, FileSpindle, FileTools};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
@@ -43,6 +45,15 @@ type StepSink<'e> = dyn FnMut(ProgramStep) + 'e;
 #[derive(Debug)]
 pub struct ClInterpreter {
     reading: ReadingOptions,
+    /// How it is to be read, before anything was.
+    told: ReadingOptions,
+    /// Files behind the first that are begun.
+    files_begun: usize,
+    /// Lines before the next of them.
+    next_file: Option<u64>,
+    left: LeftByFile,
+    /// The head that the file named last.
+    head: Option<String>,
     /// Units that the file names.
     units: Option<Units>,
     /// Millimetres in one unit of the file.
@@ -97,6 +108,8 @@ pub struct ClInterpreter {
     /// Whether the file is of a system that ends every file with FINI.
     wants_fini: bool,
     finished: bool,
+    /// It was said that records behind FINI are left out.
+    told_after_fini: bool,
     findings: Vec<Diagnostic>,
     census: WordCensus,
 }
@@ -137,8 +150,14 @@ impl ClInterpreter {
         let frame = ClFrame::new(reading.apply_msys, reading.turn);
         let smoothing = reading.smoothing.default;
         let may_cut = reading.knife || reading.spindle == DefaultSpindle::Still;
+        let next_file = reading.further.first().map(|file| file.before);
         Self {
+            told: reading.clone(),
             reading,
+            files_begun: 0,
+            next_file,
+            left: LeftByFile::default(),
+            head: None,
             units: None,
             scale,
             feed_units: None,
@@ -177,6 +196,7 @@ impl ClInterpreter {
             paths: false,
             wants_fini: false,
             finished: false,
+            told_after_fini: false,
             findings: Vec::new(),
             census: WordCensus::default(),
         }
@@ -213,8 +233,20 @@ impl ClInterpreter {
         self.statement(record, emit);
     }
 
-    /// What is left open at the end of the file.
+    /// What is left open at the end of the file, and what was found of its words.
     pub fn finish(&mut self) {
+        if self.files_begun > 0 {
+            self.end_file();
+        } else {
+            self.left_open();
+        }
+        self.findings.extend(self.census.unknown(self.reading.unknown));
+        self.findings.extend(self.census.allowed());
+        self.findings.extend(self.census.slips(&self.reading.allowed));
+    }
+
+    /// What is left open at the end of a file.
+    fn left_open(&mut self) {
         match self.pending.take() {
             None => {}
             Some(UnfinishedCurve::Arc(_) | UnfinishedCurve::Turned(_)) => self.findings.push(
@@ -248,9 +280,6 @@ impl ClInterpreter {
                 ),
             }
         }
-        self.findings.extend(self.census.unknown(self.reading.unknown));
-        self.findings.extend(self.census.allowed());
-        self.findings.extend(self.census.slips(&self.reading.allowed));
     }
 
     /// Carries out what a record says.
@@ -266,6 +295,7 @@ impl ClInterpreter {
             }
             Statement::Head(name) => {
                 self.tip = None;
+                self.head = Some(name.clone());
                 emit(ProgramStep::Command(Command::Head(name.clone())));
             }
             Statement::Godlta(delta) => self.godlta(record, delta, emit),

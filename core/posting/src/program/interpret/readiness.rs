@@ -34,6 +34,7 @@ impl ClInterpreter {
             );
         }
         self.load_told(record, emit);
+        self.refuse_what_is_left(record);
         if std::mem::take(&mut self.tools.cutter_changed) {
             self.refuse_cutter(record);
         }

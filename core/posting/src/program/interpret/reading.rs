@@ -1,9 +1,13 @@
 //! How a file is read: what the user and the machine file say of it.
 
+use std::sync::Arc;
+
 use post_grammar::{MajorWord, Units};
 use post_machine::description::{
     CompensationOnCentre, Insert, Machine, Print, SmoothingRules, ToolLength, WordRule,
 };
+
+use post_machine::diagnostic::{FurtherFile, SourceFiles};
 
 use crate::program::UnknownWordPolicy;
 
@@ -12,6 +16,8 @@ use crate::program::UnknownWordPolicy;
 pub struct ReadingOptions {
     /// The file's name in messages.
     pub file: String,
+    /// Files that are read behind it, as one text: each begins as a file of its own.
+    pub further: Arc<[FurtherFile]>,
     /// Units of the numbers, whatever the file says.
     pub units: Option<Units>,
     /// The tool that a file without `LOADTL` works with.
@@ -74,6 +80,11 @@ impl DefaultSpindle {
 }
 
 impl ReadingOptions {
+    /// The files of the text.
+    pub(crate) fn files(&self) -> SourceFiles {
+        SourceFiles::new(&self.file, Arc::clone(&self.further))
+    }
+
     /// Adds what the machine's file says of it.
     pub(crate) fn on(mut self, machine: &Machine) -> Self {
         // Half of the tolerance goes to chords of arcs and splines, half is left for the axes.

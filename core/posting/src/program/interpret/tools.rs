@@ -202,6 +202,10 @@ impl ClInterpreter {
         let cutter = std::mem::take(&mut self.tools.cutter);
         // The tool comes from the changer: no arc begins where the last one stood.
         self.tip = None;
+        if self.left.tool.take() == loaded {
+            // The file before had the same: it stays in the spindle.
+            return;
+        }
         emit(ProgramStep::Command(Command::Tool(ToolChange {
             number: tool.number,
             register,

@@ -81,8 +81,8 @@ impl<R: Read> ClCourse<R> {
     }
 }
 
-impl<R: Read> Course for ClCourse<R> {
-    fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
+impl<R: Read> ClCourse<R> {
+    fn next_item(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
         loop {
             if let Some(item) = self.waiting.pop_front() {
                 return Ok(Some(item));
@@ -107,6 +107,15 @@ impl<R: Read> Course for ClCourse<R> {
                 }
             }
         }
+    }
+}
+
+impl<R: Read> Course for ClCourse<R> {
+    fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
+        self.next_item().map_err(|mut fault| {
+            self.modal.settings.files().place(&mut fault);
+            fault
+        })
     }
 
     fn next_cuts(&mut self, cuts: &mut CutRun) -> bool {

@@ -21,7 +21,7 @@ use super::strange::StrangeWords;
 use super::tools::ClTools;
 use super::turned::ArcTurnRule;
 use crate::course::{CourseItem, CoursePiece, Curve, ReachedPose};
-use crate::{Coolants, MotionKind, ProgramEvent};
+use crate::{Coolants, MotionKind, ProgramEvent, SpindleState};
 
 /// No machine reaches a coordinate beyond this: ten kilometres, mm.
 pub(super) const FARTHEST: f64 = 1e7;
@@ -62,6 +62,12 @@ pub(super) struct ClModal {
     pub(super) settings: ClSettings,
     /// Texts of the file that are lines of the program, each once.
     pub(super) own_lines: BTreeSet<String>,
+    /// As they were told, for the files behind the first.
+    told: ClSettings,
+    /// Files behind the first that are begun.
+    files_begun: usize,
+    /// Lines before the next of them.
+    next_file: Option<u64>,
     /// Units that the file names.
     pub(super) units: Option<Units>,
     /// mm in one unit of the file.
@@ -110,6 +116,9 @@ impl ClModal {
             own_lines: BTreeSet::new(),
             scale: settings.units.map_or(1.0, millimetres),
             frames: Frames::new(settings.turn),
+            files_begun: 0,
+            next_file: settings.further.first().map(|file| file.before),
+            told: settings.clone(),
             settings,
             units: None,
             measured: false,
@@ -166,8 +175,29 @@ impl ClModal {
         }
     }
 
+    /// The file behind the one that is read begins: nothing modal of that holds, and spindle and coolant rest.
+    fn begin_file(&mut self, record: &Record<'_>, out: &mut CourseItems) -> RecordResult {
+        let ended = self.finish();
+        let begun = self.files_begun + 1;
+        let next = Self::new(self.told.clone());
+        let before = std::mem::replace(self, next);
+        self.files_begun = begun;
+        self.next_file = self.told.further.get(begun).map(|file| file.before);
+        self.tools = before.tools.of_next_file();
+        out.push_back(CourseItem::Away { line: record.line });
+        self.tell(record, ProgramEvent::Spindle(SpindleState::Off), out);
+        self.tell(record, ProgramEvent::Coolant(Coolants::default()), out);
+        if before.compensated {
+            self.tell(record, ProgramEvent::Compensation { side: 0, register: None }, out);
+        }
+        ended
+    }
+
     /// What one record means.
     pub(super) fn record(&mut self, record: &Record<'_>, out: &mut CourseItems) -> RecordResult {
+        if self.next_file.is_some_and(|before| record.line >= before) {
+            self.begin_file(record, out)?;
+        }
         if self.finished {
             return Ok(());
         }

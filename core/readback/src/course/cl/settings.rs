@@ -1,13 +1,18 @@
 //! How a CL file is meant: what the machine file says of it, and what the user does.
 
+use std::sync::Arc;
+
 use post_grammar::{MajorWord, Units};
 use post_machine::description::{EdgeSource, Insert, Machine, Print, ToolLength, WordRule};
+use post_machine::diagnostic::{FurtherFile, SourceFiles};
 
 /// How a CL file is meant. What `post` was told must be told here, so that the same job is judged.
 #[derive(Clone, Debug, Default)]
 pub struct ClSettings {
     /// The file's name in messages.
     pub file: String,
+    /// Files that are read behind it, as one text: each begins as a file of its own.
+    pub further: Arc<[FurtherFile]>,
     /// Units of its numbers, whatever it says (`--units`).
     pub units: Option<Units>,
     /// Points and axes are taken into the frame of `MSYS` (`--msys apply`).
@@ -59,6 +64,11 @@ impl ClSettings {
                 .collect(),
             ..Self::default()
         }
+    }
+
+    /// The files of the text.
+    pub fn files(&self) -> SourceFiles {
+        SourceFiles::new(&self.file, Arc::clone(&self.further))
     }
 
     /// The user takes upon himself what becomes of the word, in any of its spellings.

@@ -35,6 +35,8 @@ pub(super) struct ClTools {
     all: Vec<ClTool>,
     /// Number, register and length (as written) of the tool in the spindle.
     loaded: Option<(u32, u32, Option<f64>)>,
+    /// The tool that the file before left in the spindle.
+    left: Option<(u32, u32, Option<f64>)>,
     /// The tool of the cutter that was described last, if the file loads none.
     due: Option<u32>,
     /// Cutters in the order of their tools: where their length stands, and their numbers.
@@ -57,6 +59,12 @@ pub(super) struct ClTools {
 impl ClTools {
     pub(super) fn all(&self) -> &[ClTool] {
         &self.all
+    }
+
+    /// What is known of tools where another file begins.
+    pub(super) fn of_next_file(self) -> Self {
+        let left = self.loaded.or(self.left);
+        Self { all: self.all, cutters: self.cutters, left, ..Self::default() }
     }
 
     /// Number of the tool in the spindle.
@@ -197,6 +205,9 @@ impl ClModal {
         }
         self.tools.next_diameter = None;
         self.lost();
+        if self.tools.left.take() == loaded {
+            return Ok(());
+        }
         let name = Some(self.tools.name.clone()).filter(|name| !name.is_empty());
         let number = Some(tool.number);
         self.tell(record, ProgramEvent::ToolChange { number, name }, out);

@@ -1,0 +1,62 @@
+//! Travel of a mill whose part sits where nobody says: any place within the travel will do, so that the way of a whole
+//! program is held against it, not each point.
+
+use crate::description::Machine;
+use crate::diagnostic::Diagnostic;
+
+/// Ways that are longer than the travel by less are none, mm.
+const ROUNDED: f64 = 1e-6;
+
+/// What would help.
+pub const HELP: &str = "--mount says where the part sits, --tool-length or a file of tools (--tools) how long tools are: travel is checked by that";
+
+/// The way of an axis over a program, the part where the machine file has it.
+#[derive(Clone, Copy, Debug)]
+pub struct AxisWay<'a> {
+    /// The axis.
+    pub name: &'a str,
+    /// Least and largest position, mm.
+    pub ends: [f64; 2],
+    /// Its travel, mm; none if it has no ends.
+    pub travel: Option<[f64; 2]>,
+}
+
+impl AxisWay<'_> {
+    /// The program goes farther than the axis, wherever the part sits.
+    pub fn is_too_long(&self) -> bool {
+        let [min, max] = self.ends;
+        self.travel.is_some_and(|[least, most]| max - min > most - least + ROUNDED)
+    }
+
+    /// Says so, with the lines that lead to the two ends.
+    pub fn too_long(&self, lines: [&str; 2]) -> Diagnostic {
+        let ([min, max], [least, most]) = (self.ends, self.travel.unwrap_or_default());
+        let [first, last] = lines;
+        let message = format!(
+            "{} goes {:.3} mm, from {min:.3} (line {first}) to {max:.3} mm (line {last}), and its travel is {:.3} mm: the part fits nowhere on this machine",
+            self.name,
+            max - min,
+            most - least
+        );
+        Diagnostic::error("over-travel", message)
+            .help("another machine, or two set-ups; --units if the file's units are wrong")
+    }
+
+    /// How far an axis goes past its travel, and where the part origin must sit instead; none if it stays inside.
+    pub fn outside(&self, machine: &Machine) -> Option<String> {
+        let ([min, max], [least, most]) = (self.ends, self.travel?);
+        if min >= least && max <= most {
+            return None;
+        }
+        let joint = machine.axes.iter().find(|other| other.name == self.name)?.joint;
+        // The way of the axis along which the part origin moves with it.
+        let along = (0..3).find(|part| libm::fabs(joint.direction[*part]) > 1.0 - 1e-9)?;
+        let [mount, sense] = [machine.mount[along], joint.direction[along]];
+        let ends = [least - min, most - max].map(|by| mount + sense * by);
+        let [first, last] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        Some(format!(
+            "{} {min:.3} to {max:.3} mm of {least:.3} to {most:.3} with the part origin at {mount:.3}, inside with it from {first:.3} to {last:.3}",
+            self.name
+        ))
+    }
+}

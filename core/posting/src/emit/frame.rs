@@ -243,11 +243,10 @@ impl EmitStage<'_> {
                 name: &tool.name,
             },
         );
-        // A changer leaves the depth axis where the next tool goes across; before an axis turns it is retracted again, and
-        // behind lines of the machine's own.
-        let turns = self.base.axes.iter().any(|axis| axis.joint.rotary);
+        // It was retracted before, and a changer leaves the depth axis where the next tool goes across and axes turn, unless
+        // `change` says that it stands elsewhere; behind lines of the machine's own nobody knows.
         let own = self.say(line, TextPlace::AfterToolChange);
-        self.clear &= !turns && !own;
+        self.clear &= !own;
         let next = self.texts.next_tool();
         if let Some(number) = next.filter(|_| self.texts.preselects()) {
             self.writer.push(line, Event::Preselect { number });

@@ -114,7 +114,10 @@ fn rows(
     let axis = certified(report, report.axis_deviation_deg, "°", 5);
     let tolerance = report.axis_tolerance_deg;
     rows.row("axis deviation", format_args!("{axis}, tolerance {tolerance:.4}°"));
-    rows.row_if("rapids", report.rapids_along_axes.then(|| along_axes(report, report.rapid_deviation_mm)));
+    rows.row_if(
+        "rapids",
+        report.rapids_along_axes.then(|| along_axes(report, report.rapid_deviation_mm)),
+    );
     rows.row_if("read back", read_back.map(as_asked));
     for used in report.axes.iter().filter(|axis| axis.min <= axis.max) {
         rows.row(format_args!("axis {}", used.name), used_of(used));

@@ -67,6 +67,13 @@ pub struct Caller {
     calls: Vec<CalledProgram>,
 }
 
+/// The names of the operations that a part of a file has.
+fn named(part: &ProgramPart, ahead: &ProgramPreview) -> String {
+    let ranges = part.lines.iter().flat_map(|lines| &lines.ranges);
+    let names: Vec<&str> = ranges.flat_map(|lines| ahead.named(lines.clone())).collect();
+    names.join(", ")
+}
+
 impl Caller {
     /// Of these programs; `number` is that of the caller, those after it are theirs.
     pub fn of(
@@ -81,7 +88,7 @@ impl Caller {
             CalledProgram {
                 number: number.and_then(|number| u32::try_from(number).ok()),
                 name: part.target.stem().unwrap_or_default(),
-                remark: ahead.named(part.lines.clone().unwrap_or_default()).join(", "),
+                remark: named(part, ahead),
             }
         });
         let calls = calls.collect();

@@ -48,7 +48,7 @@ pub fn text(
         );
     }
     if !found.axis_rapids.is_none() {
-        let off = worst(&found.axis_rapids, "mm", 3);
+        let off = worst(&held.files, &found.axis_rapids, "mm", 3);
         rows.row("rapids", format_args!("straight in the axes, off the way of the tip by {off}"));
     }
     let mut more = Vec::new();

@@ -171,6 +171,12 @@ fn panes_have_room_and_are_resized() {
         let wide = browser.ask("[document.documentElement.scrollWidth, P.by('path').clientWidth]");
         assert!(wide[0].as_u64().unwrap() <= width, "the page goes past the screen: {wide}");
         assert!(wide[1].as_u64().unwrap() * 5 >= width * 2, "{width}: path {}", wide[1]);
+        // Alone a view has all of the width, and a picture that is no strip.
+        browser.ask("P.by('views').dataset.solo = 'path'; P.views.settle(); 0");
+        let alone = browser
+            .ask("[P.by('path').clientWidth, document.querySelector('.stage').clientHeight]");
+        assert!(alone[0].as_u64().unwrap() * 10 >= width * 9, "{width}: path alone {alone}");
+        assert!(alone[1].as_u64().unwrap() * 2 >= height, "{width}: path alone {alone}");
     }
     let size = json!({"width": 1440, "height": 900, "deviceScaleFactor": 1, "mobile": false});
     browser.send("Emulation.setDeviceMetricsOverride", &size);

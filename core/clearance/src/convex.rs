@@ -43,8 +43,11 @@ impl Core {
     pub fn support(&self, along: Vector3<f64>) -> Vector3<f64> {
         match self {
             Self::Frustum { ends, axis, radii } => {
-                let across = along - axis * axis.dot(&along);
-                let out = across.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+                let across = |vector: Vector3<f64>| vector - axis * axis.dot(&vector);
+                // What rounding leaves of a direction along the axis points anywhere, and the disc is across the axis.
+                let out = across(along).try_normalize(0.0).map(across);
+                let out = out.and_then(|out| out.try_normalize(0.5));
+                let out = out.unwrap_or_else(Vector3::zeros);
                 let [first, last] = [0, 1].map(|end| ends[end] + out * radii[end]);
                 if along.dot(&first) > along.dot(&last) { first } else { last }
             }

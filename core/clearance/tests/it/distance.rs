@@ -56,6 +56,21 @@ fn no_piece_is_nearer_than_is_proven() {
     assert!(close * 1000 >= all * 999, "{close} of {all}");
 }
 
+/// What rounding leaves of a direction along the axis of a disc points anywhere: it once was taken for a way out of the disc.
+#[test]
+fn a_disc_is_as_far_as_its_middle_along_its_axis() {
+    let (rounds, mut rng) = randomised(6000, 304);
+    for _ in rounds {
+        let (axis, start) = (rng.direction(), rng.point(30.0));
+        let (gap, radius) = (rng.order(-1.0, 2.0), rng.order(-1.0, 2.0));
+        let ends = [start, start + axis * rng.range(0.0, 20.0)];
+        let one = Convex::ball(start - axis * (gap + 3.0), 3.0);
+        let found = of_convex(&one, &Convex::frustum(ends, axis, [radius, 2.0 * radius]));
+        assert!(found.at_least <= gap && gap <= found.at_most + 1e-9, "{found:?} {gap}");
+        assert!(found.at_most - found.at_least < SAME, "{found:?} {gap}");
+    }
+}
+
 #[test]
 fn slivers_are_never_farther_than_they_are() {
     let (rounds, mut rng) = randomised(6000, 302);

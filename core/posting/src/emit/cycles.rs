@@ -197,7 +197,7 @@ impl EmitStage<'_> {
         let level = points(&hole.above).last()?;
         let moves = points(&hole.into).all(|block| {
             matches!(block.kind, BlockKind::Rapid | BlockKind::Linear)
-                && self.others_stand(&block.words, &level.words, place)
+                && self.rotary_stand(&block.words, &level.words)
         });
         if !moves {
             return None;
@@ -254,12 +254,11 @@ impl EmitStage<'_> {
         })
     }
 
-    /// The rotary words, and those of linear axes that stand between cuts, are the same: all but the word that drills,
-    /// and those across it.
-    fn others_stand(&self, words: &WordValues, level: &WordValues, drills: usize) -> bool {
+    /// The rotary words, and those of linear axes that stand between cuts, are the same.
+    fn rotary_stand(&self, words: &WordValues, level: &WordValues) -> bool {
         (0..self.writer.words()).all(|place| {
             self.cycle_words.across.contains(&place)
-                || place == drills
+                || Some(place) == self.cycle_words.depth
                 || words[place] == level[place]
         })
     }

@@ -59,7 +59,7 @@ fn what_is_clear_is_proven_and_what_grows_into_another_is_not() {
     fs::write(folder.path().join("bodies.toml"), higher).unwrap();
     let (said, clear) = proven(&folder, &["--set", "clearance.rapid_axes=together"]);
     assert!(!clear);
-    assert_contains(&said, &["stock hits cutter T3", "blade.nc:19"]);
+    assert_contains(&said, &["stock hits cutter T3", "blade.nc:18"]);
     // A holder that is as long as its tool touches what is cut.
     let longer = BODIES.replace("[60, 18]", "[98, 18]");
     fs::write(folder.path().join("bodies.toml"), longer).unwrap();
@@ -111,7 +111,7 @@ fn bodies_that_cannot_be_are_refused_by_their_line() {
         ),
         ("[fixture.a]\nfile = \"a.step\"\n", "no name of an STL file"),
         ("[fixture.a]\nfile = \"a.stl\"\n", "there is no such regular file"),
-        ("[clearance]\nkeep = -1\n", "it cannot be below zero"),
+        ("[clearance]\nkeep = -1\n", "[clearance] keep is -1 mm"),
         ("[tools.4]\nholder = [[0, -5], [3, 5]]\n", "the holder of tool 4 has the radius -5 mm"),
     ] {
         describe(&folder, more);

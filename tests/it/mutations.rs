@@ -976,7 +976,7 @@ fn what_differs_is_caught() {
 /// An arc that turns the other way, or about another centre, is told where it stands, not on the block behind it.
 #[test]
 fn a_wrong_arc_is_told_on_its_own_block() {
-    let jobs = jobs(&["fanuc", "haas", "mitsubishi"], &JOBS[..1]);
+    let jobs = jobs(&["fanuc", "haas", "mazak"], &JOBS[..1]);
     let mut looked = 0;
     for job in &jobs {
         for place in 0..job.lines.len() {

@@ -63,7 +63,8 @@ fn left(summary: &Value, names: &[&str]) -> f64 {
 #[test]
 fn every_machine_of_the_library_is_placed_from_where_it_does_not_fit() {
     let mut moved = 0;
-    for row in LIBRARY {
+    // Where rotary axes place the tip, no mount follows from travel: that is refused, see below.
+    for row in LIBRARY.iter().filter(|row| !row.machine.starts_with("lathe-xzc")) {
         let file = format!("tests/machines/{}.{}", row.machine, row.ending);
         let length = row.length.to_string();
         // Its pole is passed where the control keeps the tip.

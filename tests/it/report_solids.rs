@@ -120,13 +120,14 @@ fn shapes_stand_where_the_chain_brings_them() {
     // The wedge alone, corner by corner, in place of cheeks and bearings.
     let cradle = faces(&mut browser, 1);
     assert_eq!(cradle.len(), 12);
-    assert_eq!(cradle[0], json!([10, 20, -30, 1]));
-    assert_eq!(cradle[1], json!([10, 80, -30, 1]));
+    // What carries the part has its colour, by 30 more than its tone; what holds the tool 20, the tool 10.
+    assert_eq!(cradle[0], json!([10, 20, -30, 31]));
+    assert_eq!(cradle[1], json!([10, 80, -30, 31]));
     // Behind the tool, which stays, the slide, once for Z and once for the holder.
     let tool = faces(&mut browser, 5);
-    let (tones, solid): (Vec<&Value>, Vec<&Value>) = tool.iter().partition(|corner| corner[3] != 1);
+    let (tones, solid): (Vec<&Value>, Vec<&Value>) = tool.iter().partition(|corner| corner[3] != 21);
     assert_eq!(solid.len(), 24);
-    assert!(!tones.is_empty() && tones.iter().all(|corner| corner[3] == 1.25));
+    assert!(!tones.is_empty() && tones.iter().all(|corner| corner[3] == 11.25));
     // A large plate became small, and keeps its corners.
     let bed = faces(&mut browser, 2);
     assert!((1_000..=2_850).contains(&bed.len()), "{}", bed.len());

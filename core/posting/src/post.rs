@@ -8,7 +8,7 @@ use std::thread::Scope;
 use post_grammar::{GotoRun, Record, SyntaxFault};
 use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::part_anywhere::AxisWay;
 use post_plugin::{DialectSession, ModelSession};
 
@@ -477,7 +477,9 @@ impl<'a> Post<'a> {
         let joint = self.machine.axes.iter().position(|axis| axis.name == way.name);
         let lines = self.stages.emit.extremes().lines_of(joint.unwrap_or_default());
         let [first, last] = lines.map(|line| self.findings.files().line(line));
-        self.findings.placed(lines[0].max(lines[1]), way.too_long([&first, &last]))
+        // The text of a line that went by is known or not, as the runs fall.
+        let place = SourcePlace::new(self.findings.file(), lines[0].max(lines[1]), "", 0..0);
+        way.too_long([&first, &last]).at(Some(place))
     }
 
     /// Takes the findings of the interpreter.

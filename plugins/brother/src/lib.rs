@@ -114,8 +114,6 @@ const RELIES: &[&str] = &[
 
 /// Words that it reads and that are not written here.
 const OWN: &[(&str, Meaning)] = &[
-    ("G20", Meaning::Inch),
-    ("G21", Meaning::Millimetre),
     // T behind it: the tool is changed while the axes go to what else the block says.
     ("G100", Meaning::ToolChange),
     ("G33", Meaning::Thread),

@@ -60,9 +60,7 @@ fn variants() -> Vec<(String, Vec<String>)> {
         );
         let axes = file.get("axis").and_then(toml::Value::as_table);
         for (axis, table) in axes.into_iter().flatten() {
-            // A lathe without Y goes aside by C alone: with C set between cuts it cuts a line, and no square.
-            let needed = name.starts_with("lathe-xzc");
-            if table.get("rotary").is_none() || table.get("indexed").is_some() || needed {
+            if table.get("rotary").is_none() || table.get("indexed").is_some() {
                 continue;
             }
             let key = |key: &str| format!("axis.{axis}.{key}");

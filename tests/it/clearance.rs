@@ -186,7 +186,8 @@ fn fixtures_that_were_put_in_the_way_are_all_found() {
             said.contains("planted hits cutter T3")
                 || said.contains("planted stays clear of cutter T3")
         );
-        assert!(found <= *line, "{found} {line} {said}");
+        // Where a motion ends in the block the next one begins in it, and either is told.
+        assert!(found <= line + 1, "{found} {line} {said}");
     }
     assert!(hits > 3 && clear_ones > 3, "{hits} {clear_ones}");
 }

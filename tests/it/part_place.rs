@@ -73,7 +73,7 @@ fn a_part_that_fits_nowhere_is_refused() {
     let done = bench.post(&["--tool-length", "100"]);
     assert_eq!(done.code, 1, "{}", done.err);
     let fits = "error[over-travel]: X goes 1100.000 mm, from 400.000 (line 5) to 1500.000 mm (line 8), and its travel is 1020.000 mm";
-    assert!(done.err.contains(fits) && done.err.contains("part.cls:8:1"), "{}", done.err);
+    assert!(done.err.contains(fits) && done.err.contains("part.cls:8\n"), "{}", done.err);
     // A program of another hand is refused by its own lines.
     let near = Bench::new(&slot(700.0));
     near.post(&["--tool-length", "100"]);

@@ -125,7 +125,8 @@ fn shapes_stand_where_the_chain_brings_them() {
     assert_eq!(cradle[1], json!([10, 80, -30, 31]));
     // Behind the tool, which stays, the slide, once for Z and once for the holder.
     let tool = faces(&mut browser, 5);
-    let (tones, solid): (Vec<&Value>, Vec<&Value>) = tool.iter().partition(|corner| corner[3] != 21);
+    let (tones, solid): (Vec<&Value>, Vec<&Value>) =
+        tool.iter().partition(|corner| corner[3] != 21);
     assert_eq!(solid.len(), 24);
     assert!(!tones.is_empty() && tones.iter().all(|corner| corner[3] == 11.25));
     // A large plate became small, and keeps its corners.

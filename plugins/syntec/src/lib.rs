@@ -4,10 +4,9 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{
-    Control, CycleCode, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, iso_options, options,
-    words,
+    Control, Iso, Offset, Plane, Rigid, Subprogram, Table, Tcp, iso_options, options, words,
 };
-use post_plugin::{Cycle, Meaning, OptionSpec, Setup, export_dialect};
+use post_plugin::{Capabilities, Meaning, OptionSpec, Setup, export_dialect};
 
 struct Syntec;
 
@@ -23,7 +22,6 @@ impl Control for Syntec {
         tcp: Tcp::Length("G43.4"),
         vector: "G43.5",
         plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
-        cycles: CYCLES,
         rigid: Rigid::Ahead("M29"),
         subprogram: Subprogram::M98,
         words: &[
@@ -41,6 +39,11 @@ impl Control for Syntec {
     fn open(_: &Setup<'_>) -> Result<Self, String> {
         Ok(Syntec)
     }
+
+    /// Whether P of a cycle counts in ms, as in G4, or in seconds, is told either way: no cycle waits.
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::CYCLE_NO_DWELL
+    }
 }
 
 const OPTIONS: &[OptionSpec] = iso_options![
@@ -57,19 +60,6 @@ const OPTIONS: &[OptionSpec] = iso_options![
     options::smoothing_off(""),
 ];
 
-/// Whether P of a cycle's wait counts in ms, as in G4, or in seconds, is told either way: no cycle waits.
-const CYCLES: &[CycleCode] = &[
-    CycleCode::new(Cycle::Drill, "G81", ""),
-    CycleCode::new(Cycle::Deep, "G83", ""),
-    CycleCode::new(Cycle::BreakChip, "G73", ""),
-    CycleCode::new(Cycle::Tap, "G84", ""),
-    CycleCode::new(Cycle::TapLeft, "G74", ""),
-    CycleCode::new(Cycle::Ream, "G85", ""),
-    CycleCode::new(Cycle::Bore, "G86", ""),
-    CycleCode::new(Cycle::BoreFine, "G76", ""),
-    CycleCode::new(Cycle::BoreBack, "G87", ""),
-];
-
 const RELIES: &[&str] = &[
     "frame, work offsets, H, D, cycles, waits and subprograms are written as Fanuc has them: confirm at the machine",
     "under G43.4 coordinates stay with the table",
@@ -82,8 +72,6 @@ const OWN: &[(&str, Meaning)] = &[
     ("G44", Meaning::LengthNegative),
     ("G68.3", Meaning::TiltedPlane),
     ("G5.1", Meaning::Smoothing),
-    ("G82", Meaning::CycleDrill),
-    ("G89", Meaning::CycleReam),
     ("G76", Meaning::CycleBoreFine),
     ("G87", Meaning::CycleBoreBack),
     ("G88", Meaning::CycleOther),

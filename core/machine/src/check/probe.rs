@@ -328,7 +328,9 @@ impl<'a> Probe<'a> {
         settings
             .iter()
             .chain([&self.home])
-            .filter_map(|joints| self.solver().ways(joints))
+            .filter_map(|joints| {
+                self.solver().ways(joints, |place| self.machine.axes[place].indexed.is_some())
+            })
             .reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])
     }
 

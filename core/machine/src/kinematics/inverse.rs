@@ -330,11 +330,13 @@ impl Solver {
 
     /// For a chain without a closed form: in how many independent ways the tip can be moved from `joints` while the tool
     /// axis keeps its direction (3 for any path), and the tool axis while the tip stays (2 for any).
-    pub fn ways(&self, joints: &Joints) -> Option<[usize; 2]> {
+    /// Joints that `rests` are none that a cut moves.
+    pub fn ways(&self, joints: &Joints, rests: impl Fn(usize) -> bool) -> Option<[usize; 2]> {
         let SolutionMethod::Numeric { free, .. } = &self.form else {
             return None;
         };
-        let ways = numeric::ways(&self.chain, free, joints);
+        let free: Vec<usize> = free.iter().copied().filter(|joint| !rests(*joint)).collect();
+        let ways = numeric::ways(&self.chain, &free, joints);
         Some([ways.with_axis_kept, ways.of_axis_with_tip_kept])
     }
 

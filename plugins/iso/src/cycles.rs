@@ -93,7 +93,7 @@ impl CycleWords {
         CycleWords {
             codes: table.cycles,
             rigid,
-            taps: !tapping.is_empty() && !(inch && by_pitch),
+            taps: !(tapping.is_empty() || inch && by_pitch),
             shift: if inch { shift / INCH } else { shift },
             running: None,
         }

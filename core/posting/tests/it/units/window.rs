@@ -5,7 +5,7 @@ use post_posting::program::{Command, MoveFeed, ProgramStep, StraightMove, ToolCh
 
 #[test]
 fn a_part_begins_in_the_state_that_the_lines_before_it_set() {
-    let mut window = LineWindow::new(vec![10..20]);
+    let mut window = LineWindow::new(std::iter::once(10..20).collect());
     let mut steps = Vec::new();
     let tool = |number| Command::Tool(ToolChange { number, ..ToolChange::default() });
     for (line, command) in [
@@ -41,7 +41,7 @@ fn a_tool_begins_with_its_own_speed() {
     let tool = || Command::Tool(ToolChange { number: 2, ..ToolChange::default() });
     let turning = |rpm| Command::Spindle(Spindle::On { rpm, sense: SpindleSense::Clockwise });
     let made = |said: &[Command]| {
-        let mut window = LineWindow::new(vec![10..20]);
+        let mut window = LineWindow::new(std::iter::once(10..20).collect());
         let mut steps = Vec::new();
         window.step(1, ProgramStep::Command(turning(15_000.0)), &mut steps);
         window.step(2, ProgramStep::Command(Command::Coolant(Coolant::Mist)), &mut steps);

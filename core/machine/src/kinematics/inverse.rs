@@ -330,7 +330,7 @@ impl Solver {
 
     /// For a chain without a closed form: in how many independent ways the tip can be moved from `joints` while the tool
     /// axis keeps its direction (3 for any path), and the tool axis while the tip stays (2 for any).
-    /// Joints that `rests` are none that a cut moves.
+    /// `rests` tells which joints no cut moves.
     pub fn ways(&self, joints: &Joints, rests: impl Fn(usize) -> bool) -> Option<[usize; 2]> {
         let SolutionMethod::Numeric { free, .. } = &self.form else {
             return None;

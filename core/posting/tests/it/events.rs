@@ -322,7 +322,7 @@ after_tcp = "(NO TCP)"
         .collect();
     assert_eq!(
         told.join("; "),
-        "Retract; Retract; (TO B30.0 C90.0); Turn; (TURNED); (TCP 3000 ccw mist); Position; \
+        "Retract; (TO B30.0 C90.0); Turn; (TURNED); (TCP 3000 ccw mist); Position; \
          Retract; (NO TCP); M99; End"
     );
 }

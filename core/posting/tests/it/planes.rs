@@ -186,7 +186,7 @@ fn a_plane_begins_and_ends_with_the_tool_clear_of_the_part() {
         let expected = [
             &["Start", "Retract"][..],
             park,
-            &["ToolChange", "Spindle", "Retract", "Turn"],
+            &["ToolChange", "Spindle", "Turn"],
             &["Plane", "Position"],
             along,
             &["Linear", "Linear", "Linear", "Linear", "Rapid"],

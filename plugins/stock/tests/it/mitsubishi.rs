@@ -43,9 +43,10 @@ fn taps_are_synchronous() {
     let rigid = bench().write_declared(&jobs::three_axes()).unwrap();
     let (_, tap) = rigid.split_once("M29 S").unwrap();
     assert!(tap.lines().nth(1).unwrap().contains("G84 "), "{rigid}");
-    let floating = bench().with("tapping", Value::Text("floating"));
+    let plain = || Bench::of(post_mitsubishi::plugin());
+    let floating = plain().with("tapping", Value::Text("floating"));
     let floating = floating.write_declared(&jobs::three_axes()).unwrap();
     assert!(floating.contains("G84 ") && !floating.contains("M29"), "{floating}");
-    let unsaid = Bench::of(post_mitsubishi::plugin()).write_declared(&jobs::three_axes()).unwrap();
+    let unsaid = plain().write_declared(&jobs::three_axes()).unwrap();
     assert!(!unsaid.contains("G84"), "{unsaid}");
 }

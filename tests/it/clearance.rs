@@ -68,6 +68,30 @@ fn what_is_clear_is_proven_and_what_grows_into_another_is_not() {
     assert_contains(&said, &["stock hits holder T3"]);
 }
 
+/// What a tool has cut another has not been in: drawn out of the cut behind a change it is in the way.
+#[test]
+fn a_tool_that_is_changed_in_the_cut_was_not_there_before() {
+    let folder = folder("");
+    let machine = "extends = \"vmc\"\nname = \"mine\"\n[stock]\nblock = [[-20, -20, -30], [20, 20, 0]]\n\
+                   [tools.1]\nlength = 100\ncutter = [[0, 5], [60, 5]]\n\
+                   [tools.2]\nlength = 100\ncutter = [[0, 30], [60, 30]]\n";
+    fs::write(folder.path().join("mine.toml"), machine).unwrap();
+    let program = |change: &str| {
+        format!(
+            "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT1 M6\nS1000 M3\nG54\nG0 X-100. Y0.\nG43 H1 Z50.\nG0 X0. \
+             Y0.\nG1 Z-20. F500.\n{change}G0 Z50.\nG53 G0 Z20.\nM30\n%\n"
+        )
+    };
+    for (change, code) in [("", 0), ("T2 M6\nG43 H2\n", 1)] {
+        fs::write(folder.path().join("part.nc"), program(change)).unwrap();
+        let run = post_in(
+            folder.path(),
+            &["clearance", "part.nc", "-m", "mine.toml", "--mount", "0,0,-300"],
+        );
+        assert_eq!(run.code, code, "{change}: {}{}", run.out, run.err);
+    }
+}
+
 #[test]
 fn pairs_that_are_left_out_are_left_out_and_names_must_be_of_something() {
     let fixture = "[fixture.post]\nblock = [[-10, -10, 0], [10, 10, 60]]\n[clearance]\n";

@@ -40,6 +40,8 @@ pub(super) struct ClearanceWatch<'a> {
     tool: Option<(u32, Option<f64>)>,
     /// The cutter is nowhere thinner than nearer to its tip.
     widens: bool,
+    /// The tool has come to where it stands by a motion since it was changed: another one would have been there.
+    came: bool,
     /// It was said that the spindle turns the part.
     turns_part: bool,
     rows: BTreeMap<[String; 2], PairRow>,
@@ -64,6 +66,7 @@ impl<'a> ClearanceWatch<'a> {
             diameters,
             tool: None,
             widens: true,
+            came: false,
             turns_part: false,
             rows: BTreeMap::new(),
             found,
@@ -109,7 +112,8 @@ impl<'a> ClearanceWatch<'a> {
             independent: at_rapid && !together,
         };
         // What goes along its own axis sweeps what it has been in before, if it is nowhere thinner above.
-        let cuts = !rapid || (self.widens && withdraws(motion, way.independent));
+        let came = std::mem::replace(&mut self.came, true);
+        let cuts = !rapid || (came && self.widens && withdraws(motion, way.independent));
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
             let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
@@ -142,6 +146,7 @@ impl<'a> ClearanceWatch<'a> {
             return;
         }
         self.tool = Some((number, length));
+        self.came = false;
         self.put_down();
         let machine = &self.control.machine;
         let mut bodies = self.fixed.clone();

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use nalgebra::Vector3;
-use post_testkit::seeded;
+use post_testkit::{Rng, seeded};
 use serde_json::Value;
 
 use crate::common::{command, run};
@@ -14,6 +14,33 @@ use crate::dialects::{dialects, named};
 const PRINTED: f64 = 1e-6;
 
 const INCH: f64 = 25.4;
+
+/// Holes keep off the ways between others, mm: a rapid that comes so near to what is cut is told, whatever the words round.
+const ASIDE: f64 = 1.5;
+
+/// Where twelve holes stand, mm along X and Y: three, a way back to the middle, three more.
+fn places(random: &mut Rng) -> Vec<[f64; 2]> {
+    loop {
+        let places: Vec<[f64; 2]> =
+            (0..12).map(|_| [0; 2].map(|_| random.range(-40.0, 40.0))).collect();
+        let mut stops = vec![[0.0; 2]];
+        for three in places.chunks(3) {
+            stops.extend(three);
+            stops.push([0.0; 2]);
+        }
+        let aside = |way: &[[f64; 2]], place: &[f64; 2]| {
+            let [from, to] = [way[0], way[1]].map(|[x, y]| Vector3::new(x, y, 0.0));
+            let place = Vector3::new(place[0], place[1], 0.0);
+            let along = (to - from).dot(&(place - from)) / (to - from).norm_squared();
+            (from + (to - from) * along.clamp(0.0, 1.0) - place).norm() > ASIDE
+        };
+        let free =
+            |place: &[f64; 2]| stops.windows(2).all(|way| way.contains(place) || aside(way, place));
+        if places.iter().all(free) {
+            return places;
+        }
+    }
+}
 
 /// A CL file of random holes, in inch or mm, and where their bottoms are, mm. Its numbers are no multiples of what a
 /// program prints.
@@ -28,7 +55,8 @@ fn holes(seed: u64, inch: bool) -> (String, Vec<Vector3<f64>>) {
         printed(60.0)
     );
     let mut bottoms = Vec::new();
-    for _ in 0..4 {
+    let places = places(&mut random);
+    for three in places.chunks(3) {
         let kind = ["DRILL", "DEEP", "BRKCHP", "REAM"][random.pick(4)];
         let depth = printed(random.range(1.0, 30.0));
         let clear = random.range(0.5, 6.0);
@@ -45,9 +73,8 @@ fn holes(seed: u64, inch: bool) -> (String, Vec<Vector3<f64>>) {
             "CYCLE/{kind},{depth},{per_minute},{feed},{}{step}{back}\n",
             printed(clear)
         ));
-        for _ in 0..3 {
-            let at = [(-40.0, 40.0), (-40.0, 40.0), (-5.0, 20.0)]
-                .map(|(least, most)| printed(random.range(least, most)));
+        for [x, y] in three {
+            let at = [*x, *y, random.range(-5.0, 20.0)].map(printed);
             text.push_str(&format!("GOTO/{}\n", at.join(",")));
             let [x, y, z] = at.each_ref().map(|value| told(value));
             bottoms.push(Vector3::new(x, y, z - told(&depth)));

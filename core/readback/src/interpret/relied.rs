@@ -82,6 +82,13 @@ impl ControlState {
         }
     }
 
+    /// A straight move at feed tells nothing more of what the program relies on: one before it has.
+    pub(super) fn has_begun(&self) -> bool {
+        let plane = if self.state.compensation != 0 { ModalGroup::Plane.bit() } else { 0 };
+        let moves = ModalGroup::Units.bit() | ModalGroup::Distance.bit() | ModalGroup::Feed.bit();
+        self.begun && self.modal.unset & (moves | plane) == 0
+    }
+
     #[cold]
     fn look_for_first_retract(&mut self) {
         let retract = self.machine.frame.retract.iter().map(|(place, _)| *place);

@@ -72,6 +72,7 @@ impl ControlState {
             && self.cycles.are_off();
         let plain = straight
             && self.fed
+            && self.has_begun()
             && self.shared.is_some()
             && !self.in_machine
             && !self.hole

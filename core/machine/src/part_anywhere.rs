@@ -3,12 +3,61 @@
 
 use crate::description::Machine;
 use crate::diagnostic::Diagnostic;
+use crate::kinematics::{Joints, MAX_AXES};
 
 /// Ways that are longer than the travel by less are none, mm.
 const ROUNDED: f64 = 1e-6;
 
 /// What would help.
 pub const HELP: &str = "--mount says where the part sits, --tool-length or a file of tools (--tools) how long tools are: travel is checked by that";
+
+/// Least and largest position of each axis over a program, mm or radians, and the lines that lead to them.
+#[derive(Clone, Debug)]
+pub struct AxisEnds {
+    least: Joints,
+    most: Joints,
+    lines: [[u64; 2]; MAX_AXES],
+}
+
+impl AxisEnds {
+    /// Before any motion.
+    pub const NONE: Self = Self {
+        least: [f64::INFINITY; MAX_AXES],
+        most: [f64::NEG_INFINITY; MAX_AXES],
+        lines: [[0; 2]; MAX_AXES],
+    };
+
+    /// An axis goes from `least` to `most`; `line` tells which line leads it to one of them.
+    #[inline]
+    pub fn take(&mut self, joint: usize, [least, most]: [f64; 2], line: impl Fn(f64) -> u64) {
+        if least < self.least[joint] {
+            (self.least[joint], self.lines[joint][0]) = (least, line(least));
+        }
+        if most > self.most[joint] {
+            (self.most[joint], self.lines[joint][1]) = (most, line(most));
+        }
+    }
+
+    /// Least and largest position of an axis; none if it was led nowhere.
+    pub fn of(&self, joint: usize) -> Option<[f64; 2]> {
+        let ends = [self.least[joint], self.most[joint]];
+        (ends[0] <= ends[1]).then_some(ends)
+    }
+
+    /// The lines that lead to them.
+    pub fn lines(&self, joint: usize) -> [u64; 2] {
+        self.lines[joint]
+    }
+}
+
+/// Says how much travel a program needs where nobody says where the part sits, nor what `besides` adds.
+pub fn needed(outside: &[String], besides: &str) -> Diagnostic {
+    let message = format!(
+        "nobody says where the part sits{besides}; this much travel the program needs: {}",
+        outside.join("; ")
+    );
+    Diagnostic::warning("part-place", message).help(HELP)
+}
 
 /// The way of an axis over a program, the part where the machine file has it.
 #[derive(Clone, Copy, Debug)]

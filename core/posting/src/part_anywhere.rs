@@ -3,7 +3,7 @@
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_machine::part_anywhere::{AxisWay, HELP};
+use post_machine::part_anywhere::{AxisWay, HELP, needed};
 
 use crate::configuration::{LengthSource, ReportedTool};
 use crate::report::AxisRange;
@@ -44,11 +44,7 @@ pub(crate) fn judge(
                 [] => String::new(),
                 unknown => format!(", nor how long {} is", unknown.join(", ")),
             };
-            let message = format!(
-                "nobody says where the part sits{lengths}; this much travel the program needs: {}",
-                outside.join("; ")
-            );
-            Some(Diagnostic::warning("part-place", message).help(HELP))
+            Some(needed(outside, &lengths))
         }
     }
 }

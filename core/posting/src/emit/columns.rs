@@ -36,7 +36,6 @@ impl EmitStage<'_> {
     /// As few events as there can be: one ends where the feeds become of another kind, and with a block whose place in
     /// the program is told.
     fn take_columns(&mut self, run: &RunColumns, timed: &TimedRun) {
-        self.extremes.note_run(run);
         self.extremes.reach_all(&self.last, run);
         let worst = self.extremes.mark_cuts(run);
         let words = self.writer.words();

@@ -1,6 +1,7 @@
 //! Extremes of the program that was written, for the report.
 
 use post_machine::kinematics::{Joints, MAX_AXES};
+use post_machine::part_anywhere::AxisEnds;
 
 use crate::accuracy::{DeviationBound, RunColumns};
 use crate::blocks::MotionBlock;
@@ -27,30 +28,13 @@ pub(crate) struct Extremes {
     /// Largest axis values.
     pub most: Joints,
     /// Lines of the CL file that lead to both, where they are wanted.
-    lines: Option<Box<ExtremeLines>>,
+    lines: Option<Box<AxisEnds>>,
     /// Way of each axis over all blocks, mm or radians.
     pub travel: Joints,
     /// Where the largest deviations stand in the batch that is not written yet: index of the event.
     marks: [Option<usize>; 3],
     /// The batch that each of them was marked in last.
     batches: [u64; 3],
-}
-
-/// Lines of the CL file that lead to the extremes.
-#[derive(Clone, Debug)]
-struct ExtremeLines {
-    least: Joints,
-    most: Joints,
-    /// Of the least and the largest value of each axis.
-    lines: [[u64; 2]; MAX_AXES],
-}
-
-impl ExtremeLines {
-    const NONE: Self = Self {
-        least: [f64::INFINITY; MAX_AXES],
-        most: [f64::NEG_INFINITY; MAX_AXES],
-        lines: [[0; 2]; MAX_AXES],
-    };
 }
 
 impl Extremes {
@@ -62,7 +46,7 @@ impl Extremes {
             deviations: [ReportedDeviation::default(); 3],
             least: [f64::INFINITY; MAX_AXES],
             most: [f64::NEG_INFINITY; MAX_AXES],
-            lines: lines.then(|| Box::new(ExtremeLines::NONE)),
+            lines: lines.then(|| Box::new(AxisEnds::NONE)),
             travel: [0.0; MAX_AXES],
             marks: [None; 3],
             batches: [0; 3],
@@ -117,7 +101,7 @@ impl Extremes {
         }
     }
 
-    /// [`Extremes::reach`] and [`Extremes::go`] of all blocks of a run that begins at `last`.
+    /// [`Extremes::reach`], [`Extremes::note_line`] and [`Extremes::go`] of all blocks of a run that begins at `last`.
     pub(super) fn reach_all(&mut self, last: &Joints, run: &RunColumns) {
         self.blocks += run.count as u64;
         for (joint, (column, last)) in run.joints.iter().zip(last).enumerate() {
@@ -128,6 +112,11 @@ impl Extremes {
                 most = if *value > most { *value } else { most };
             }
             (self.least[joint], self.most[joint]) = (least, most);
+            if let Some(noted) = &mut self.lines {
+                let first = |end: f64| column.iter().position(|value| *value == end);
+                let line = |end: f64| run.lines[first(end).unwrap_or_default()];
+                noted.take(joint, [least, most], line);
+            }
             let (mut travel, mut from) = (self.travel[joint], *last);
             for to in column {
                 travel += (to - from).abs();
@@ -201,29 +190,13 @@ impl Extremes {
             return;
         };
         for joint in 0..MAX_AXES {
-            if self.least[joint] < noted.least[joint] {
-                (noted.least[joint], noted.lines[joint][0]) = (self.least[joint], line);
-            }
-            if self.most[joint] > noted.most[joint] {
-                (noted.most[joint], noted.lines[joint][1]) = (self.most[joint], line);
-            }
-        }
-    }
-
-    /// [`Extremes::note_line`] of all blocks of a run.
-    pub(super) fn note_run(&mut self, run: &RunColumns) {
-        if self.lines.is_none() {
-            return;
-        }
-        for lane in 0..run.count {
-            self.cover(&run.joints_at(lane));
-            self.note_line(run.lines[lane]);
+            noted.take(joint, [self.least[joint], self.most[joint]], |_| line);
         }
     }
 
     /// Lines that lead to the least and the largest value of an axis; zero where they were not wanted.
     pub(crate) fn lines_of(&self, joint: usize) -> [u64; 2] {
-        self.lines.as_ref().map(|noted| noted.lines[joint]).unwrap_or_default()
+        self.lines.as_ref().map(|noted| noted.lines(joint)).unwrap_or_default()
     }
 
     /// Adds a block's way of each axis.

@@ -7,7 +7,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::MAX_AXES;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{Joints, LinearMotion, Solver, TcpBlock, Trace};
-use post_machine::part_anywhere::{AxisWay, HELP};
+use post_machine::part_anywhere::{AxisEnds, AxisWay, needed};
 
 use crate::{Curve, Interpolation, Motion, MotionKind};
 
@@ -58,33 +58,19 @@ pub(crate) struct AxisLimitCheck {
 struct PartWays {
     /// The axis was moved last by words of the part: those of the machine lead elsewhere on each mount.
     of_part: [bool; MAX_AXES],
-    least: Joints,
-    most: Joints,
-    /// Lines of the program that lead to both.
-    lines: [[u64; 2]; MAX_AXES],
+    ends: AxisEnds,
 }
 
 impl PartWays {
-    const NONE: Self = Self {
-        of_part: [false; MAX_AXES],
-        least: [f64::INFINITY; MAX_AXES],
-        most: [f64::NEG_INFINITY; MAX_AXES],
-        lines: [[0; 2]; MAX_AXES],
-    };
+    const NONE: Self = Self { of_part: [false; MAX_AXES], ends: AxisEnds::NONE };
 
     fn take(&mut self, motion: &Motion, [least, most]: [&Joints; 2]) {
         for joint in 0..MAX_AXES {
             if motion.from.joints[joint] != motion.to.joints[joint] {
                 self.of_part[joint] = !motion.machine;
             }
-            if !self.of_part[joint] {
-                continue;
-            }
-            if least[joint] < self.least[joint] {
-                (self.least[joint], self.lines[joint][0]) = (least[joint], motion.line);
-            }
-            if most[joint] > self.most[joint] {
-                (self.most[joint], self.lines[joint][1]) = (most[joint], motion.line);
+            if self.of_part[joint] {
+                self.ends.take(joint, [least[joint], most[joint]], |_| motion.line);
             }
         }
     }
@@ -169,29 +155,23 @@ impl AxisLimitCheck {
     /// What is to be said of travel at the end, where the part may sit anywhere: that it fits nowhere, with the line that
     /// says so, or how much the program needs.
     pub fn part_place(&self, machine: &Machine) -> Option<(u64, Diagnostic)> {
-        let found = self.anywhere.as_ref()?;
+        let found = &self.anywhere.as_ref()?.ends;
         let mut outside = Vec::new();
         for (joint, axis) in machine.axes.iter().enumerate() {
-            let ends = [found.least[joint], found.most[joint]];
-            if ends[0] > ends[1] {
+            let Some(ends) = found.of(joint) else {
                 continue;
-            }
+            };
             let ends = ends.map(|end| axis.reading(end));
             let travel = axis.travel.map(|travel| travel.map(|end| axis.reading(end)));
             let way = AxisWay { name: &axis.name, ends, travel };
             if way.is_too_long() {
-                let lines = found.lines[joint];
+                let lines = found.lines(joint);
                 let [first, last] = lines.map(|line| line.to_string());
                 return Some((lines[0].max(lines[1]), way.too_long([&first, &last])));
             }
             outside.extend(way.outside(machine));
         }
-        let message = format!(
-            "nobody says where the part sits; this much travel the program needs: {}",
-            outside.join("; ")
-        );
-        let told = Diagnostic::warning("part-place", message).help(HELP);
-        (!outside.is_empty()).then_some((0, told))
+        (!outside.is_empty()).then(|| (0, needed(&outside, "")))
     }
 
     /// An axis passes its largest feed, if the control does what the program says; `bend` is [`bend_between_words`] of the

@@ -77,6 +77,15 @@ pub fn text(finder: &Finder, machine: &Machine, key: &str) -> Option<String> {
     }
 }
 
+/// What programs of a machine rely on at its control, a sentence each, as its dialect tells it.
+///
+/// # Errors
+/// The dialect cannot be opened, or fails to tell.
+pub fn relies_on(finder: &Finder, machine: &Machine) -> Result<Vec<String>, Vec<Diagnostic>> {
+    let (mut opened, _) = dialect(finder, machine, "SHEET", None)?;
+    opened.relies_on().map_err(|fault| vec![Diagnostic::error("plugin", fault)])
+}
+
 /// The work offset that a program of this machine is in where the CL file names none, by the option of its dialect: as a word,
 /// or a row of Heidenhain's preset table. None where the operator chooses it.
 pub fn work_offset(finder: &Finder, machine: &Machine) -> Option<String> {
@@ -167,10 +176,8 @@ pub fn dialect_knowing(
             time: ahead.time_s,
         }),
     };
-    let mut opened = plugin.dialect(&setup).map_err(fault)?;
-    let relies_on = opened.relies_on();
-    let relies_on = relies_on.map_err(|fault| vec![Diagnostic::error("plugin", fault)])?;
-    Ok((opened, PluginUse { relies_on, ..used(&plugin) }))
+    let opened = plugin.dialect(&setup).map_err(fault)?;
+    Ok((opened, used(&plugin)))
 }
 
 /// The CL file's name without its folder; empty for standard input.
@@ -235,7 +242,6 @@ fn used(plugin: &Plugin) -> PluginUse {
         version: plugin.version().to_owned(),
         path: plugin.path().map(|path| path.display().to_string()),
         hash: plugin.hash().map(str::to_owned),
-        relies_on: Vec::new(),
     }
 }
 

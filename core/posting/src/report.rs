@@ -147,7 +147,4 @@ pub struct PluginUse {
     pub path: Option<String>,
     /// Hash of the library's bytes.
     pub hash: Option<String>,
-    /// What programs of a dialect rely on at the control, a sentence each: for the setup sheet, not for the summary.
-    #[serde(skip)]
-    pub relies_on: Vec<String>,
 }

@@ -260,10 +260,14 @@ fn write_besides(
     {
         let reports = outcomes.iter().map(|outcome| &outcome.report);
         let programs: Vec<_> = parts.iter().map(|part| &part.target).zip(reports).collect();
-        let input = &maker.job.input;
-        let offset = plugin_finder::work_offset(&maker.finder, &parts[0].machine);
-        let job =
-            SheetJob { machine: &parts[0].machine, cl_file: input, work_offset: offset, ahead };
+        let machine = &parts[0].machine;
+        let job = SheetJob {
+            machine,
+            cl_file: &maker.job.input,
+            work_offset: plugin_finder::work_offset(&maker.finder, machine),
+            relies_on: plugin_finder::relies_on(&maker.finder, machine)?,
+            ahead,
+        };
         let text = setup_sheet::text(sheet, &job, &programs);
         file.write_bytes(text.as_bytes())?;
     }

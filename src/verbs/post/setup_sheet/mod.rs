@@ -30,6 +30,8 @@ pub struct SheetJob<'a> {
     pub cl_file: &'a PathArg,
     /// The work offset that the programs are in where the CL file names none; none where the operator chooses it.
     pub work_offset: Option<String>,
+    /// What the programs rely on at the control, a sentence each.
+    pub relies_on: Vec<String>,
     /// What a first pass found out.
     pub ahead: &'a ProgramPreview,
 }
@@ -52,7 +54,7 @@ pub fn text(
         the_operations(job),
         for_the_operator(ahead),
         the_axes(programs),
-        what_holds_at_the_control(programs),
+        what_holds_at_the_control(job),
         the_options(machine),
     ];
     let html = sheet.path().and_then(|path| path.extension());
@@ -309,13 +311,11 @@ fn the_axes(programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
 }
 
 /// Parameters and options of the control that the programs rely on, as their dialect tells them.
-fn what_holds_at_the_control(programs: &[(&PathArg, &PostingReport)]) -> SheetTable {
-    let plugins = programs.first().map_or(&[][..], |(_, report)| &report.plugins);
-    let rows = plugins.iter().flat_map(|plugin| &plugin.relies_on);
+fn what_holds_at_the_control(job: &SheetJob<'_>) -> SheetTable {
     SheetTable {
         title: "The program relies on".to_owned(),
         head: vec![""],
-        rows: rows.map(|sentence| vec![sentence.clone()]).collect(),
+        rows: job.relies_on.iter().map(|sentence| vec![sentence.clone()]).collect(),
     }
 }
 

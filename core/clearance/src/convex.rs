@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use parry3d_f64::math::Vector;
 use parry3d_f64::shape::SupportMap;
 
-use crate::distance::Placement;
+use crate::placement::Placement;
 
 /// A convex piece, mm: its core, and all that is within `round` of it.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,12 +4,13 @@
 //! one point to the other is that of two parallel planes which hold each piece on its own side, as far as the farthest
 //! points of both along it tell: their distance is a lower bound, however the direction was found.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_points};
 
 use crate::ALLOWANCE;
 use crate::convex::Convex;
+use crate::placement::Placement;
 use crate::shape::{Below, Shape};
 
 /// Pieces that are no nearer than this share of the nearest found are not looked at.
@@ -17,37 +18,6 @@ const CLOSE: f64 = 0.98;
 
 /// Steps to a point of two pieces that overlap, for who looks at it.
 const STEPS: usize = 40;
-
-/// Where a link stands in the frame of another.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
-    /// Rotation.
-    pub rotation: Matrix3<f64>,
-    /// Shift, mm.
-    pub shift: Vector3<f64>,
-}
-
-impl Placement {
-    /// Where both frames are one.
-    pub fn identity() -> Self {
-        Self { rotation: Matrix3::identity(), shift: Vector3::zeros() }
-    }
-
-    /// A point there.
-    pub fn point(&self, point: Vector3<f64>) -> Vector3<f64> {
-        self.rotation * point + self.shift
-    }
-
-    /// A direction there.
-    pub fn direction(&self, direction: Vector3<f64>) -> Vector3<f64> {
-        self.rotation * direction
-    }
-
-    /// The point of the frame itself that stands on `point`.
-    pub fn back(&self, point: Vector3<f64>) -> Vector3<f64> {
-        self.rotation.transpose() * (point - self.shift)
-    }
-}
 
 /// What is known of how far two shapes are apart, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,6 +21,7 @@ pub mod distance;
 mod inside;
 pub mod pair;
 pub mod piece;
+pub mod placement;
 pub mod proof;
 pub mod shape;
 

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Chain, Joint, Joints, Trace};
 
-use crate::distance::Placement;
 use crate::piece::Piece;
+use crate::placement::Placement;
 
 /// One body seen from the link of another: the axes between them, with the middle of the body as what these carry.
 #[derive(Clone, Debug)]

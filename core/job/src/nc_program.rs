@@ -118,7 +118,7 @@ impl NcControl {
     ) -> Result<RunningProgram<'i>, Box<Diagnostic>> {
         let Self { counted, lexicon, offsets, own_lines, limits, .. } = self;
         let mut input = input;
-        other_language::refuse(self, name, &mut input)?;
+        other_language::refuse(&self.machine, self.spoken.language, name, &mut input)?;
         let input: ProgramText<'i> = Box::new(input);
         let program = Interpreter::new(counted, lexicon, offsets, *limits, name, input)?;
         Ok(program.declaring(own_lines.iter().map(String::as_str)))

@@ -2,10 +2,9 @@
 
 use std::io::{self, Read, Seek, SeekFrom};
 
+use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_plugin::Language;
-
-use super::nc_program::NcControl;
 
 /// So many bytes of a program show its language.
 const HEAD: u64 = 1 << 13;
@@ -13,24 +12,23 @@ const HEAD: u64 = 1 << 13;
 /// Words that no control but SINUMERIK has.
 const NAMES: &[&str] = &["SUPA", "TRAFOOF", "TRAORI", "MCALL", "G500", "G710", "CYCLE800"];
 
-/// Refuses the program `name` in `input`, from where it stands, if it is in a language that the control does not read;
-/// nothing of it is read then.
+/// Refuses the program `name` in `input`, from where it stands, if it is in another language than the control of `machine`
+/// `reads`; nothing of it is read then.
 ///
 /// # Errors
 /// It is, or it cannot be read.
 pub fn refuse(
-    control: &NcControl,
+    machine: &Machine,
+    reads: Language,
     name: &str,
     input: &mut (impl Read + Seek),
 ) -> Result<(), Box<Diagnostic>> {
     let head = head(input).map_err(|error| {
         Diagnostic::error("input", format!("{name} cannot be read: {error}")).boxed()
     })?;
-    let reads = control.spoken.language;
     let Some(written) = other_than(reads, &head) else {
         return Ok(());
     };
-    let machine = &control.machine;
     let message = format!(
         "{name} is {}, and {}, whose dialect is {}, reads {}",
         called(written),

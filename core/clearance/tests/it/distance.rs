@@ -2,7 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use post_clearance::convex::Convex;
-use post_clearance::distance::{Placement, of_convex, of_shapes};
+use post_clearance::distance::{of_convex, of_shapes};
+use post_clearance::placement::Placement;
 use post_clearance::shape::Shape;
 use post_testkit::randomised;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use nalgebra::{Rotation3, Vector3};
 use post_clearance::convex::Convex;
-use post_clearance::distance::Placement;
+use post_clearance::placement::Placement;
 use post_clearance::proof::{Body, BodyKind};
 use post_clearance::shape::{MeshFaults, Shape};
 use post_machine::description::{GivenBody, GivenShape, Machine, ToolOutline};

@@ -4,9 +4,9 @@
 
 use post_iso::{
     Control, CycleCode, Dwell, Iso, Leave, MotionCodes, Offset, Plane, Rigid, Subprogram, Table,
-    Tcp, iso_options, options, words,
+    Tcp, check_unit_system, iso_options, options, words,
 };
-use post_plugin::{Cycle, Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect};
+use post_plugin::{Cycle, Meaning, OptionKind, OptionSpec, Setup, Value, export_dialect};
 
 struct Brother;
 
@@ -45,22 +45,12 @@ impl Control for Brother {
     };
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        let wanted = match setup.units {
-            Units::Millimetre => "mm",
-            Units::Inch => "inch",
-        };
-        match setup.text("unit_system") {
-            named if named == wanted => Ok(Brother),
-            "" => Err(
-                "the units of a program are a setting of this control, which no word of the program chooses: say which one \
-                 it has by the option `unit_system`"
-                    .to_owned(),
-            ),
-            other => Err(format!(
-                "this program is in {wanted}, and the control is set to {other}: it would read the numbers otherwise; \
-                 [control] units chooses the program's, `unit_system` says the control's"
-            )),
-        }
+        check_unit_system(
+            setup,
+            ["mm", "inch"],
+            "the units of a program are a setting of this control, which no word of the program chooses",
+        )?;
+        Ok(Brother)
     }
 }
 

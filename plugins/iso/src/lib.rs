@@ -18,7 +18,7 @@ mod vocabulary;
 pub mod words;
 
 use post_plugin::{
-    Capabilities, CutRun, Dialect, Event, Format, OptionSpec, Setup, VocabularyWord,
+    Capabilities, CutRun, Dialect, Event, Format, OptionSpec, Setup, Units, VocabularyWord,
 };
 
 pub use engine::Engine;
@@ -29,6 +29,23 @@ pub use table::{
     Plane, Rigid, SplineForm, Stops, Subprogram, SurfaceSpeed, Table, Tcp, is_offset_beyond_six,
     offset_beyond_six, offset_of_six,
 };
+
+/// Refuses a program in other units than those that the control is said to have by the option `unit_system`, where no word
+/// of a program chooses them; `called` is how that option calls mm and inch, `why` says what decides.
+///
+/// # Errors
+/// The sentence for the user.
+pub fn check_unit_system(setup: &Setup<'_>, called: [&str; 2], why: &str) -> Result<(), String> {
+    let wanted = called[usize::from(setup.units == Units::Inch)];
+    match setup.text("unit_system") {
+        named if named == wanted => Ok(()),
+        "" => Err(format!("{why}: say which unit system it has by the option `unit_system`")),
+        other => Err(format!(
+            "the numbers of this program count in units of {wanted}, and the unit system of the control is {other}: it \
+             would read them otherwise; [control] units chooses the program's, `unit_system` says the control's"
+        )),
+    }
+}
 
 /// Refuses words that lie within one turn, where the control would not go the shorter way between them; `why` says what
 /// it does.

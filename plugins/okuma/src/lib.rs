@@ -4,10 +4,10 @@
 
 use post_iso::{
     Control, CycleCode, CycleReturn, Dwell, Iso, Leave, Length, MotionCodes, Offset, Rigid,
-    Subprogram, Table, Tcp, iso_options, options,
+    Subprogram, Table, Tcp, check_unit_system, iso_options, options,
 };
 use post_plugin::{
-    Capabilities, Cycle, Meaning, OptionKind, OptionSpec, Setup, Units, Value, export_dialect,
+    Capabilities, Cycle, Meaning, OptionKind, OptionSpec, Setup, Value, export_dialect,
 };
 
 struct Okuma {
@@ -51,24 +51,12 @@ impl Control for Okuma {
     };
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        let wanted = match setup.units {
-            Units::Millimetre => "1 mm",
-            Units::Inch => "1 inch",
-        };
-        match setup.text("unit_system") {
-            named if named == wanted => Ok(Okuma {
-                retracts: !setup.text("retract").is_empty(),
-            }),
-            "" => Err(
-                "what a number means is a parameter of this control, and a point does not override it: say which unit \
-                 system it has by the option `unit_system`"
-                    .to_owned(),
-            ),
-            other => Err(format!(
-                "the numbers of this program count in units of {wanted}, and the unit system of the control is {other}: \
-                 it would read them otherwise; [control] units chooses the program's, `unit_system` says the control's"
-            )),
-        }
+        check_unit_system(
+            setup,
+            ["1 mm", "1 inch"],
+            "what a number means is a parameter of this control, and a point does not override it",
+        )?;
+        Ok(Okuma { retracts: !setup.text("retract").is_empty() })
     }
 
     /// G16 H0 counts from a zero of the builder's own, which is the top of Z on hardly any machine.

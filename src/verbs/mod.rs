@@ -2,6 +2,7 @@
 //! below, `job`, `files`, `terminal` and `arguments`.
 
 mod batch;
+mod calibrate;
 mod check;
 mod clearance;
 mod complete;
@@ -34,6 +35,7 @@ use post_machine::diagnostic::nearest;
 
 use crate::job_lines::{self, PlainWords, ProgramWords};
 use batch::BatchArguments;
+use calibrate::CalibrateArguments;
 use check::CheckArguments;
 use clearance::ClearanceArguments;
 use complete::CompletionsArguments;
@@ -142,6 +144,7 @@ enum Verb<const LATE: bool> {
     Profile(Late<ProfileArguments, LATE>),
     Schema(Late<SchemaArguments, LATE>),
     Batch(Late<Box<BatchArguments>, LATE>),
+    Calibrate(Late<CalibrateArguments, LATE>),
     Check(Late<CheckArguments, LATE>),
     Clearance(Late<Box<ClearanceArguments>, LATE>),
     Convert(Late<Box<ConvertArguments>, LATE>),
@@ -205,6 +208,7 @@ impl CommandLine {
             Some(Verb::Profile(Late(arguments))) => profile::run(session, &arguments),
             Some(Verb::Schema(Late(arguments))) => print_schema::run(session, &arguments),
             Some(Verb::Batch(Late(arguments))) => batch::run(session, &arguments),
+            Some(Verb::Calibrate(Late(arguments))) => calibrate::run(session, &arguments),
             Some(Verb::Check(Late(arguments))) => check::run(session, &arguments),
             Some(Verb::Clearance(Late(arguments))) => clearance::run(session, &arguments),
             Some(Verb::Convert(Late(arguments))) => convert::run(session, &arguments),

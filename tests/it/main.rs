@@ -9,6 +9,7 @@ mod batch;
 #[cfg(target_os = "linux")]
 mod bounds;
 mod browser;
+mod calibrate;
 mod ceilings;
 mod changes;
 mod check;

@@ -4,6 +4,7 @@ mod axes;
 pub mod batch;
 mod beside;
 mod blocks_ahead;
+pub mod calibrate;
 pub mod caller;
 pub mod clearance;
 mod columns;

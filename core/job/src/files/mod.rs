@@ -24,6 +24,7 @@ mod scale;
 mod scratch;
 pub mod standard;
 pub mod svg;
+pub mod table_cells;
 mod target;
 mod temporary;
 mod watched;

@@ -6,6 +6,7 @@ use post_machine::description::ToolData;
 
 use super::reading::ToolReading;
 use super::written::TableUnits;
+use crate::files::table_cells::{cells, separator};
 
 /// What a column may hold.
 const COLUMNS: [&str; 12] = [
@@ -26,38 +27,6 @@ const COLUMNS: [&str; 12] = [
 /// Columns of lengths, in the units of the table.
 const LENGTHS: [&str; 7] =
     ["length", "length_wear", "radius", "diameter", "radius_wear", "corner_radius", "stick_out"];
-
-/// What keeps cells apart: the sign of the heads that stands there most often.
-fn separator(head: &str) -> char {
-    let mut best = (0, ',');
-    for sign in [',', ';', '\t'] {
-        let count = head.matches(sign).count();
-        if count > best.0 {
-            best = (count, sign);
-        }
-    }
-    best.1
-}
-
-/// The cells of a line; one in quotes may hold what keeps cells apart.
-fn cells(text: &str, separator: char) -> Vec<String> {
-    let mut cells = vec![String::new()];
-    let mut quoted = false;
-    let mut signs = text.chars().peekable();
-    while let Some(sign) = signs.next() {
-        let Some(cell) = cells.last_mut() else { break };
-        match sign {
-            '"' if quoted && signs.peek() == Some(&'"') => {
-                signs.next();
-                cell.push('"');
-            }
-            '"' => quoted = !quoted,
-            sign if sign == separator && !quoted => cells.push(String::new()),
-            sign => cell.push(sign),
-        }
-    }
-    cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
-}
 
 /// A column that is read.
 struct Column {

@@ -183,6 +183,7 @@ impl Builder<'_> {
             place: self.sources.place(spanned.span()),
             carries_part,
             joint,
+            reversed: axis.reversed,
             zero: zero * unit,
             travel,
             range,

@@ -189,6 +189,8 @@ pub struct Axis {
     pub carries_part: bool,
     /// Kind, direction and line.
     pub joint: Joint,
+    /// The file has its direction turned round (`reversed`).
+    pub reversed: bool,
     /// What the control shows where the drawing has the axis at zero, mm or radians. All other values here
     /// are counted from the drawing's zero.
     pub zero: f64,

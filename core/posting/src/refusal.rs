@@ -263,6 +263,13 @@ fn indexes<'m>(machine: &'m Machine, from: &Joints, to: &Joints) -> Option<&'m A
     axes.find(moves).map(|(_, axis)| axis)
 }
 
+/// Where the rotary axes stand: `C 12.500° A -30.000°`.
+fn rotary_values(machine: &Machine, joints: &Joints) -> String {
+    let rotary = machine.axes.iter().zip(joints).filter(|(axis, _)| axis.joint.rotary);
+    let each = rotary.map(|(axis, value)| format!("{} {:.3}°", axis.name, axis.reading(*value)));
+    each.collect::<Vec<_>>().join(" ")
+}
+
 /// Why a cut cannot go on: what each solution asks of the axes, whether it is on the branch that the cut is
 /// on, and where the axes stand before.
 pub(crate) fn no_way(
@@ -270,13 +277,7 @@ pub(crate) fn no_way(
     from: &Joints,
     tried: &[(Result<Joints, OverTravel>, bool, Joints)],
 ) -> Diagnostic {
-    let rotary = |joints: &Joints| {
-        let axes = machine.axes.iter().zip(joints);
-        axes.filter(|(axis, _)| axis.joint.rotary)
-            .map(|(axis, value)| format!("{} {:.3}°", axis.name, axis.reading(*value)))
-            .collect::<Vec<_>>()
-            .join(" ")
-    };
+    let rotary = |joints: &Joints| rotary_values(machine, joints);
     let reasons: Vec<String> = tried
         .iter()
         .map(|(carried, same, joints)| match carried {
@@ -438,4 +439,16 @@ pub(crate) fn cut_from_outside() -> Diagnostic {
         "this cut begins where a move ends that is not part of the program: the tool would come to its end at rapid",
     )
     .help("choose the operation before it too, or let the CAM system begin this one with a rapid")
+}
+
+/// Another solution is taken where the program has the tool's vector alone: the control would go on with the nearest one.
+pub(crate) fn no_vector_says_it(machine: &Machine, joints: &Joints) -> Diagnostic {
+    let message = format!(
+        "here the rotary axes are turned to another solution, {}, and the program has the tool's vector in their place: \
+         the control would go on with the nearest solution",
+        rotary_values(machine, joints)
+    );
+    Diagnostic::error("jump", message).help(
+        "write rotary words: leave out the dialect's option tool_vector, tool_vectors; or keep to one solution: [solution] start, prefer, a smaller part of the travel",
+    )
 }

@@ -147,6 +147,8 @@ pub(crate) struct BlockStage<'a> {
     /// The largest deviations so far.
     largest: LargestDeviations,
     counts: BlockCounts,
+    /// Moves have the tool's vector in the place of rotary words, and the control finds its own solution for it.
+    by_vector: bool,
     /// Observers of cuts; none if nobody looks on.
     observers: Option<Rc<Observers<'a>>>,
     findings: Findings,
@@ -173,6 +175,7 @@ impl<'a> BlockStage<'a> {
             between: CompensatingMotion::new(machine),
             gathered: PendingRun::default(),
             keeps: CurvePolicy::new(machine, writes),
+            by_vector: tcp && writes.has(Capabilities::TOOL_VECTOR),
             plans: false,
             nominal: Vec::new(),
             last: None,
@@ -359,7 +362,12 @@ impl<'a> BlockStage<'a> {
             reason: if chosen.eased { BlockReason::Eased } else { BlockReason::Point },
         };
         if chosen.arrives {
-            self.counts.branch_changes += u64::from(chosen.changed && leg.loose);
+            let changed = chosen.changed && leg.loose;
+            self.counts.branch_changes += u64::from(changed);
+            if self.by_vector && self.last.is_some() && (changed || chosen.rewind.is_some()) {
+                self.findings
+                    .at(leg.line, refusal::no_vector_says_it(self.machine, &chosen.joints));
+            }
             self.counts.eased += u64::from(chosen.eased);
             let mut node = self.spare.take().unwrap_or_default();
             let settled = if self.placed.take(lane, &mut node) {

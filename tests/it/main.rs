@@ -75,6 +75,7 @@ mod summary;
 mod terminal;
 mod threads;
 mod tools;
+mod unsaid;
 mod verbs;
 mod verified;
 mod vocabularies;

@@ -18,7 +18,7 @@ use post_machine::kinematics::Chain;
 use post_plugin::Capabilities;
 use post_readback::course::cl::{ClCourse, ClSettings};
 use post_readback::course::{Course as _, CourseItem, Curve};
-use post_readback::interpret::{Interpreter, Limits};
+use post_readback::interpret::{Interpreter, Limits, ModalGroup};
 use post_readback::lexicon::Lexicon;
 use post_readback::verify::{CutBounds, CutPath, Verifier, VerifyRules};
 use post_readback::{BlockEffect, Motion, MotionKind, Offsets, ProgramEvent};
@@ -199,9 +199,27 @@ impl Job {
             all.append(&mut done);
         }
         let report = program.report();
+        // Not every dialect ends a plane ahead of its programs.
+        let ends_planes = ["G69", "PLANE RESET STAY"]
+            .iter()
+            .any(|end| self.lines.iter().take(12).any(|line| line.ends_with(end)));
         let relied = report.relied.iter();
+        let relied = relied.filter(|(_, group)| *group != ModalGroup::TiltedPlane || ends_planes);
         faults
             .extend(relied.map(|(line, group)| (Some(*line), format!("{} not set", group.name()))));
+        let unsaid = [&report.unsaid, &report.unturned, &report.blind];
+        faults.extend(
+            unsaid
+                .into_iter()
+                .flatten()
+                .map(|(line, axes)| (Some(*line), format!("{axes} unsaid"))),
+        );
+        let cut_off = report.cycle_cut_off;
+        faults.extend(cut_off.map(|line| (Some(line), "the cycle is cut off".to_owned())));
+        match &report.end {
+            Some(end) if end.in_force.is_empty() => {}
+            end => faults.push((None, format!("ends with {end:?}"))),
+        }
         let unretracted = report.unretracted.iter();
         faults
             .extend(unretracted.map(|(line, axes)| (Some(*line), format!("{axes} not retracted"))));
@@ -247,10 +265,11 @@ const KINDS: &[&str] = &[
     "word out",
     "stop out",
     "mode out",
+    "end out",
 ];
 
 /// What no control reads as it was meant, or reads by what ran before: whatever a reader makes of it, it is to be told.
-const MALFORMED: &[&str] = &["second feed", "malformed", "mode out"];
+const MALFORMED: &[&str] = &["second feed", "malformed", "mode out", "end out"];
 
 /// Words of lines that lead off the part in positions of the machine.
 const RETRACTS: &[&str] = &["G53", "G28", "G30", "SUPA", "M91", "M140", "VPSLZ", "G16 H0"];
@@ -266,6 +285,9 @@ const STOPS: &[&str] = &["M0", "M1", "M00", "M01", "STOP"];
 
 /// Words of modes that stand once, in the head.
 const HEAD_MODES: &[&str] = &["G21", "G20", "G71", "G710", "G90"];
+
+/// Words that end a mode or the program. M30 of Heidenhain stands ahead of END PGM, which ends it too.
+const ENDS: &[&str] = &["G40", "G80", "G69", "G255", "M30", "M2", "PLANE RESET STAY"];
 
 /// Words of dwells.
 const WAITS: &[&str] = &["G4 ", "G04 ", "CYCL DEF 9", "Q211", "G82", "G89"];
@@ -489,6 +511,24 @@ fn mutate(kind: &str, random: &mut Rng, lines: &mut Vec<String>, length: &mut f6
             let at = *heads.get(random.pick(heads.len().max(1)))?;
             let words = lines[at].split(' ').filter(|word| !HEAD_MODES.contains(word));
             lines[at] = words.collect::<Vec<_>>().join(" ");
+            Some(())
+        }
+        "end out" => {
+            let conversational = lines.last().is_some_and(|line| line.contains("END PGM"));
+            let mut places = Vec::new();
+            for (at, line) in lines.iter().enumerate() {
+                for word in ENDS.iter().filter(|word| !(conversational && **word == "M30")) {
+                    let alone = |from: &usize| {
+                        let bytes = line.as_bytes();
+                        (*from == 0 || bytes[from - 1] == b' ')
+                            && bytes.get(from + word.len()).is_none_or(|next| *next == b' ')
+                    };
+                    let found = line.match_indices(word).map(|(from, _)| from).filter(alone);
+                    places.extend(found.map(|from| (at, from..from + word.len())));
+                }
+            }
+            let (at, word) = places.get(random.pick(places.len().max(1)))?.clone();
+            lines[at].replace_range(word, "");
             Some(())
         }
         "wait" => change_digit_in(random, lines, "PXFUQ", WAITS),

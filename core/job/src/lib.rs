@@ -48,6 +48,7 @@ pub mod summary;
 pub mod text;
 pub mod text_table;
 pub mod tools;
+mod unsaid;
 pub mod unused_options;
 pub mod verify;
 

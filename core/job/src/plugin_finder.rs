@@ -66,6 +66,17 @@ pub fn integer(finder: &Finder, machine: &Machine, key: &str) -> Option<i64> {
     }
 }
 
+/// An option of the dialect that is yes or no, likewise.
+pub fn flag(finder: &Finder, machine: &Machine, key: &str) -> Option<bool> {
+    let plugin = finder.find(&machine.control.dialect).ok()?;
+    let declared = plugin.options().iter().find(|spec| spec.key == key)?;
+    match (given_value(machine, key), declared.default) {
+        (Some(OptionValue::Flag(flag)), _) => Some(*flag),
+        (None, Value::Flag(flag)) => Some(flag),
+        _ => None,
+    }
+}
+
 /// An option of the dialect that is text, likewise.
 pub fn text(finder: &Finder, machine: &Machine, key: &str) -> Option<String> {
     let plugin = finder.find(&machine.control.dialect).ok()?;

@@ -13,14 +13,15 @@ use post_plugin::{Lengths, Meaning};
 use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
 use post_readback::course::cl::{ClCourse, ClSettings, ClTool};
 use post_readback::course::{Course, CourseWindow};
-use post_readback::interpret::{Limits, ModalGroup, ReadReport};
+use post_readback::interpret::Limits;
 use post_readback::verify::{
-    BlockReport, CutBounds, CutPath, Fault, Verification, Verifier, VerifyRules,
+    BlockReport, CutBounds, CutPath, Fault, OwnStops, Verification, Verifier, VerifyRules,
 };
-use post_readback::{BlockEffect, Offsets, ProgramRun};
+use post_readback::{BlockEffect, MOST_FAULTS, Offsets, ProgramRun};
 
 use super::nc_program::{self, DialectVocabulary, NcControl};
 use super::plugin_finder;
+use super::unsaid::Unsaid;
 use crate::beside::Work;
 use crate::blocks_ahead::{RunBlocks, TOGETHER};
 use crate::failure::Failure;
@@ -28,9 +29,6 @@ use crate::files::{ClInput, ClSource, FileFault, ReadPosition, Watched};
 use crate::nc_program::{ProgramText, RunningProgram};
 use crate::session::Session;
 use crate::settings::{JobSettings, Msys};
-
-/// The word that makes the taps behind it rigid, on controls whose dialect names it.
-const RIGID: &str = "M29";
 
 /// What a program is read with.
 pub struct ReadingSetup<'a> {
@@ -345,12 +343,19 @@ pub fn hold<C: Course>(
         }
     }
     let mut run = run.into_blocks();
-    let mut findings = found_by_running(name, &run, machine);
+    let mut findings = run.faults().to_vec();
     let report = run.program().report();
-    findings.extend(left_to_others(name, report, &control.spoken, own));
-    if plugin_finder::text(reading.finder, machine, "tapping").as_deref() == Some("rigid") {
-        findings.extend(bare_taps(name, report, &control.spoken, own));
-    }
+    findings.extend(report.notes.iter().cloned());
+    let whole = !verifier.found().gave_up && run.faults().len() < MOST_FAULTS;
+    let unsaid = Unsaid {
+        name,
+        report,
+        spoken: &control.spoken,
+        own,
+        last_line: whole.then(|| run.program().stand().0),
+    };
+    findings.extend(unsaid.findings(reading.finder, machine));
+    findings.extend(nc_program::unknown_words(name, report, machine));
     let blocks = report.blocks;
     let found = verifier.finish(&mut |line| watch.line(line));
     if found.gave_up && watch.runs_on() {
@@ -369,86 +374,6 @@ pub fn hold<C: Course>(
     Ok(VerifiedProgram { found, findings, blocks, files })
 }
 
-/// What cannot be read of the program `name`, and what is taken for granted of it.
-fn found_by_running(
-    name: &str,
-    run: &ProgramRun<RunningProgram<'_>>,
-    machine: &Machine,
-) -> Vec<Diagnostic> {
-    let mut findings = run.faults().to_vec();
-    let report = run.program().report();
-    findings.extend(report.notes.iter().cloned());
-    if let Some((line, axes)) = &report.unsaid {
-        let message = format!(
-            "the program cuts before it says where {axes} stands: where the machine has it then is not known"
-        );
-        let place = SourcePlace::new(name, *line, "", 0..0);
-        findings.push(Diagnostic::error("missing", message).at(Some(place)));
-    }
-    findings.extend(nc_program::unknown_words(name, report, machine));
-    findings
-}
-
-/// Taps that should be rigid, of the program `name`, without the word ahead of them that makes them so.
-fn bare_taps(
-    name: &str,
-    report: &ReadReport,
-    spoken: &DialectVocabulary,
-    own: bool,
-) -> Option<Diagnostic> {
-    let (line, count) = report.bare_taps?;
-    spoken.words.iter().find(|word| word.word == RIGID && word.meaning == Meaning::Nothing)?;
-    let holes = if count == 1 { "a hole is".to_owned() } else { format!("{count} holes are") };
-    let message = format!(
-        "{holes} tapped without {RIGID} ahead of the cycle: spindle and feed go together only if a parameter says so, and a tap in a rigid holder breaks"
-    );
-    let finding = match own {
-        true => Diagnostic::error("hole", message),
-        false => Diagnostic::warning("hole", message),
-    };
-    let help = format!(
-        "write {RIGID} ahead of it, or say tapping = \"floating\" for a holder that gives way"
-    );
-    Some(finding.help(help).at(Some(SourcePlace::new(name, line, "", 0..0))))
-}
-
-/// What the program `name` leaves to whatever ran before it: modes that it does not set, and where the tool stands as it
-/// begins. A program of our own says all of that; others have it said elsewhere, perhaps.
-fn left_to_others(
-    name: &str,
-    report: &ReadReport,
-    spoken: &DialectVocabulary,
-    own: bool,
-) -> Vec<Diagnostic> {
-    let mut findings = Vec::new();
-    let at = |line| Some(SourcePlace::new(name, line, "", 0..0));
-    let words = |group: ModalGroup| {
-        let words = spoken.words.iter().filter(|word| ModalGroup::of(word.meaning) == Some(group));
-        let words: Vec<&str> = words.map(|word| word.word.as_ref()).collect();
-        format!("{} ({})", group.name(), words.join(", "))
-    };
-    if let Some((line, _)) = report.relied.first() {
-        let unset: Vec<String> = report.relied.iter().map(|(_, group)| words(*group)).collect();
-        let message = format!(
-            "the program does not set {}: what its words mean hangs on what ran before it",
-            unset.join(", nor ")
-        );
-        let finding = match own {
-            true => Diagnostic::error("nc-modes", message),
-            false => Diagnostic::warning("nc-modes", message),
-        };
-        let help = "set it in the first lines of the program: a reset of the control does not";
-        findings.push(finding.help(help).at(at(*line)));
-    }
-    if let (true, Some((line, axes))) = (own, &report.unretracted) {
-        let message = format!(
-            "{axes} is not retracted before the first tool change or the first way to the part: where it stands then is not known"
-        );
-        findings.push(Diagnostic::error("rapid", message).at(at(*line)));
-    }
-    findings
-}
-
 /// What of the program `name` is worth a look, without being wrong.
 fn noticed(name: &str, found: &Verification) -> Vec<Diagnostic> {
     let counted = |message: &str, count: u64| match count {
@@ -463,6 +388,23 @@ fn noticed(name: &str, found: &Verification) -> Vec<Diagnostic> {
         Diagnostic::warning(left.code, counted(&left.message, left.count)).at(at(left.line))
     });
     near.chain(left).chain(found.part_place.clone()).collect()
+}
+
+/// Stops and waits in lines of the user's own.
+fn own_stops(machine: &Machine, control: &NcControl) -> OwnStops {
+    let mut own = OwnStops::default();
+    let lines = control.own_lines.iter().flat_map(|line| line.split_whitespace());
+    let words = machine.program.own_words().chain(lines.map(str::to_uppercase));
+    for word in words {
+        match control.lexicon.meaning_of(&word) {
+            Some(Meaning::Stop) => own.stop = true,
+            Some(Meaning::OptionalStop) => own.optional = true,
+            Some(Meaning::Dwell) => own.dwell = true,
+            None if word == "STOP" => own.stop = true,
+            _ => {}
+        }
+    }
+    own
 }
 
 /// What a program is held to.
@@ -496,6 +438,7 @@ fn rules(reading: &ReadingSetup<'_>, control: &NcControl, tools: &[ClTool]) -> V
         coolants: !reading.any_coolant,
         // A retract by lines of the user's own leads where they say.
         own: reading.own && machine.program.text(TextPlace::Retract).is_none(),
+        own_stops: own_stops(machine, control),
         feed_place: feed_place(machine, spoken.feed_decimals),
         linear_rapids: machine.rapid(spoken.rapids_pass()) == Rapid::Linear,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),

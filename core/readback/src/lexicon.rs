@@ -88,8 +88,10 @@ impl Lexicon {
             empty: BTreeMap::new(),
             choices: Vec::new(),
             modes: match language {
-                // Its head names the units, and I the ways; the plane is that of the tool call.
-                Language::Conversational => 0,
+                // Its head names the units, I the ways and R0 the path; the plane is that of the tool call.
+                Language::Conversational => {
+                    ModalGroup::named(words) & ModalGroup::TiltedPlane.bit()
+                }
                 _ => ModalGroup::named(words),
             },
         };
@@ -110,6 +112,12 @@ impl Lexicon {
     /// Its language.
     pub fn language(&self) -> Language {
         self.language
+    }
+
+    /// A stop (M0, M1) stops the spindle and the coolant too: on Heidenhain and Haas in any case, on other controls of
+    /// letters as their builders have it. Siemens, LinuxCNC and GRBL leave both on.
+    pub fn stops_spindle(&self) -> bool {
+        !matches!(self.language, Language::Names | Language::Rs274)
     }
 
     /// Where the control has the length of the tool from.
@@ -201,6 +209,19 @@ impl Lexicon {
     pub(crate) fn m(&self, code: u16) -> WordMeaning {
         let sense = self.m.get(usize::from(code)).copied().unwrap_or(0);
         self.senses[usize::from(sense)]
+    }
+
+    /// What a word as it is written means on its own: `M01`, `STOP`.
+    pub fn meaning_of(&self, word: &str) -> Option<Meaning> {
+        let sense = match VocabularyCode::of(word) {
+            Some(VocabularyCode::G(code)) => self.g(code),
+            Some(VocabularyCode::M(number)) => self.m(number),
+            None => self.name(word),
+        };
+        match sense {
+            WordMeaning::Means(meaning) => Some(meaning),
+            WordMeaning::Unknown | WordMeaning::Refused => None,
+        }
     }
 
     /// What a letter in front of a value means, where it is no axis.

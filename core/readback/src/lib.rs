@@ -95,10 +95,22 @@ pub struct MachineState {
     pub spindle: SpindleState,
     /// Coolants that flow.
     pub coolants: Coolants,
+    /// What a stop may have switched off since the program switched it on.
+    pub standstill: Standstill,
     /// The operation, as a remark or a word of the program names it.
     pub operation: Option<String>,
     /// The control may leave the path by this much, mm; none: it keeps it, or nothing is said.
     pub smoothing: Option<f64>,
     /// How the control passes from one motion to the next.
     pub corners: Corners,
+}
+
+/// Lines of the stops (M0, M1) that switch something off where the control stops it there, until the program switches it
+/// on again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Standstill {
+    /// The spindle turned as the program stopped.
+    pub spindle: Option<u64>,
+    /// A coolant flowed.
+    pub coolant: Option<u64>,
 }

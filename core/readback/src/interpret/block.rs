@@ -11,7 +11,7 @@ use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
 use super::spindle_request::SpindleRequest;
 use super::state::{ControlState, FeedMeaning, MotionMode};
-use super::{ModalGroup, cycles, frames, names, planes};
+use super::{ModalGroup, ProgramEnd, cycles, frames, names, planes};
 use crate::g_code::GCode;
 use crate::lexicon::WordMeaning;
 use crate::{Curve, MotionKind, ProgramEvent};
@@ -105,6 +105,9 @@ pub(super) fn run(
     for index in 0..words.g.list().len() {
         control.g_code(words.g.list()[index], words, &mut asked)?;
     }
+    if std::mem::take(&mut control.cycles.cut_off) && !asked.cycle_off {
+        control.report.cycle_cut_off.get_or_insert(control.line);
+    }
     for index in 0..words.m.list().len() {
         control.m_code(words.m.list()[index], &mut asked)?;
     }
@@ -148,6 +151,7 @@ impl ControlState {
         match self.head_by_hand.take() {
             Some(head) => self.take_head(head),
             None => {
+                self.stand_still();
                 self.tell(event);
                 Ok(())
             }
@@ -189,6 +193,8 @@ impl ControlState {
         self.modal.motion = mode;
         self.stand_behind_taps();
         if self.cycles.in_force() {
+            // Where cycles return to a level of their own G80 stops the spindle too, and a rapid is how they end.
+            self.cycles.cut_off = !self.lexicon.returns_to_levels();
             cycles::end(self);
         }
     }
@@ -338,6 +344,14 @@ impl ControlState {
 
     /// The program ends.
     pub(super) fn end(&mut self) {
+        let holds = [
+            (self.state.compensation != 0, "radius compensation"),
+            (self.cycles.in_force(), "a cycle"),
+            (self.frames.plane.is_some(), "a tilted plane"),
+            (self.state.tcp, "tool centre point control"),
+        ];
+        let in_force = holds.iter().filter(|(holds, _)| *holds).map(|(_, name)| *name).collect();
+        self.report.end = Some(ProgramEnd { line: self.line, in_force });
         self.tell(ProgramEvent::End);
         self.ended = true;
     }
@@ -420,6 +434,7 @@ impl ControlState {
             ));
         }
         self.begins();
+        self.relies_on_nothing_left();
         if kind == MotionKind::Feed {
             self.relies_on(ModalGroup::Feed);
         }
@@ -518,6 +533,9 @@ impl ControlState {
             let place = usize::from(self.axes.letters[letter]) % post_machine::kinematics::MAX_AXES;
             let value = words.values[letter];
             let way = incremental & (1 << letter) != 0;
+            if way {
+                target.ways |= 1 << place;
+            }
             if self.axes.rotary & (1 << place) != 0 {
                 let value = value.to_radians();
                 let to = if way {

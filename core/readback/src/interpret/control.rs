@@ -21,6 +21,7 @@ use super::state::{
 use crate::lexicon::Lexicon;
 use crate::{
     BlockEffect, Coolants, Corners, MachineState, Offsets, ProgramEvent, SpindleState, Stance,
+    Standstill,
 };
 
 /// Lengths that are kept ready.
@@ -127,6 +128,7 @@ impl ControlState {
                 work_offset: None,
                 spindle: SpindleState::Off,
                 coolants: Coolants::default(),
+                standstill: Standstill::default(),
                 operation: None,
                 smoothing: None,
                 corners: Corners::Unsaid,
@@ -280,12 +282,17 @@ impl ControlState {
     pub fn head_changed(&mut self, machine: Arc<Machine>) -> Result<(), Box<Diagnostic>> {
         // An axis keeps its value where the other chain has one of its name.
         let mut joints = start(&machine);
-        for (joint, axis) in joints.iter_mut().zip(&machine.axes) {
+        let mut said = 0;
+        for (place, (joint, axis)) in joints.iter_mut().zip(&machine.axes).enumerate() {
             let before = self.machine.axes.iter().position(|before| before.name == axis.name);
             if let Some(before) = before {
                 *joint = self.at.joints[before];
+                said |= (self.said >> before & 1) << place;
             }
         }
+        self.said = said;
+        // Of its own axes the program is to say where they stand, too.
+        self.fed = false;
         self.axes = AxisLetters::new(&machine);
         self.machine = machine;
         self.solvers.clear();

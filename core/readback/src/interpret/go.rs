@@ -1,6 +1,7 @@
 //! Motions: from where words lead to axis values, and to the tip and tool axis that they bring about.
 
 use nalgebra::Vector3;
+use post_machine::axis_words::is_depth;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 use std::f64::consts::TAU;
@@ -23,6 +24,8 @@ pub(super) struct MotionTarget {
     pub joints: Joints,
     /// Bits of the places of `joints` that are said.
     pub said: u32,
+    /// Bits of the places of axes whose words are ways from where they stood (G91).
+    pub ways: u32,
     /// The tool axis, in the coordinates of the program; need not be a unit vector.
     pub vector: Option<Vector3<f64>>,
 }
@@ -59,20 +62,16 @@ impl ControlState {
         self.to_work.inside(point)
     }
 
-    /// Goes straight to a point of the program, mm; rotary axes stay.
+    /// Goes straight to a point of the program, mm; rotary axes stay. It says of no axis where it stands.
     pub fn straight(
         &mut self,
         kind: MotionKind,
         point: Vector3<f64>,
     ) -> Result<(), Box<Diagnostic>> {
-        // It says nothing that was not known of the others.
-        let said = self.said;
-        let went = self.go(kind, &Curve::Straight, &MotionTarget::point(point));
-        self.said = said;
-        went
+        self.lead(kind, &Curve::Straight, &MotionTarget::point(point))
     }
 
-    /// Goes to `target`.
+    /// Goes to `target`, which the words of the program say.
     #[inline]
     pub fn go(
         &mut self,
@@ -80,8 +79,19 @@ impl ControlState {
         path: &Curve,
         target: &MotionTarget,
     ) -> Result<(), Box<Diagnostic>> {
-        let from = self.at;
         self.says(target);
+        self.lead(kind, path, target)
+    }
+
+    /// Goes to `target`.
+    #[inline]
+    fn lead(
+        &mut self,
+        kind: MotionKind,
+        path: &Curve,
+        target: &MotionTarget,
+    ) -> Result<(), Box<Diagnostic>> {
+        let from = self.at;
         let tips = self.tip_words();
         if let Some(vector) = target.vector {
             self.aim(target, vector)?;
@@ -115,26 +125,63 @@ impl ControlState {
         }
     }
 
-    /// Remembers which axes the program has led somewhere.
+    /// Remembers which axes the program has led somewhere: a way from where nobody knows leads nowhere that is known.
     fn says(&mut self, target: &MotionTarget) {
-        self.said |= target.said;
+        let mut said = target.said;
         for (row, place) in self.axes.cartesian.iter().enumerate() {
             if let (Some(_), Some(place)) = (target.point[row], place) {
-                self.said |= 1 << place;
+                said |= 1 << place;
             }
+        }
+        if target.vector.is_some() {
+            said |= self.axes.rotary;
+        }
+        self.said |= said & !target.ways;
+    }
+
+    /// The depth of a cycle says where the axis stands that the tool is fed along.
+    pub fn says_depth(&mut self, row: usize) {
+        if let Some(place) = self.axes.cartesian[row] {
+            self.said |= 1 << place;
         }
     }
 
-    /// The first motion at feed: have all linear axes been led somewhere?
+    /// Names of the axes, rotary or linear ones, that were led nowhere; empty if there is none.
+    fn unsaid_axes(&self, rotary: bool) -> String {
+        let axes = self.machine.axes.iter().enumerate();
+        let unsaid = axes
+            .filter(|(place, axis)| axis.joint.rotary == rotary && self.said & (1 << place) == 0);
+        unsaid.map(|(_, axis)| axis.name.as_str()).collect::<Vec<&str>>().join(", ")
+    }
+
+    /// A rapid ahead of the first motion at feed: does the depth move while the tool is nobody knows where over the part?
+    #[cold]
+    fn look_where_it_comes_down(&mut self, from: &Stance) {
+        let deeper = |place: usize| {
+            self.at.joints[place] != from.joints[place] && is_depth(&self.machine, place)
+        };
+        if self.in_machine || !(0..self.machine.axes.len()).any(deeper) {
+            return;
+        }
+        let unsaid = [false, true].map(|rotary| self.unsaid_axes(rotary));
+        let unsaid: Vec<&str> = unsaid.iter().map(String::as_str).collect();
+        let unsaid: Vec<&str> = unsaid.into_iter().filter(|names| !names.is_empty()).collect();
+        if !unsaid.is_empty() {
+            self.report.blind.get_or_insert((self.line, unsaid.join(", ")));
+        }
+    }
+
+    /// The first motion at feed: have all axes been led somewhere?
     #[cold]
     fn look_where_it_begins(&mut self) {
         self.fed = true;
-        let unsaid = self.axes.cartesian.iter().flatten();
-        let unsaid = unsaid.filter(|place| self.said & (1 << **place) == 0);
-        let names: Vec<&str> =
-            unsaid.map(|place| self.machine.axes[*place].name.as_str()).collect();
-        if !names.is_empty() {
-            self.report.unsaid = Some((self.line, names.join(", ")));
+        let (linear, rotary) = (self.unsaid_axes(false), self.unsaid_axes(true));
+        let line = self.line;
+        if !linear.is_empty() {
+            self.report.unsaid.get_or_insert((line, linear));
+        }
+        if !rotary.is_empty() {
+            self.report.unturned.get_or_insert((line, rotary));
         }
     }
 
@@ -391,8 +438,11 @@ impl ControlState {
         if from.joints == self.at.joints && !way.is_curved() {
             return;
         }
-        if kind != MotionKind::Rapid && !self.fed {
-            self.look_where_it_begins();
+        if !self.fed {
+            match kind {
+                MotionKind::Rapid => self.look_where_it_comes_down(&from),
+                MotionKind::Feed | MotionKind::Thread => self.look_where_it_begins(),
+            }
         }
         let (feed, minutes) = self.timed(kind, &way, &from, &self.at);
         let state = self.hand_on_state();

@@ -91,6 +91,13 @@ pub struct ReadReport {
     /// The line of the first motion at feed, if the program has not said before where these linear axes stand: it is
     /// taken to begin with them at zero.
     pub unsaid: Option<(u64, String)>,
+    /// The same of rotary axes.
+    pub unturned: Option<(u64, String)>,
+    /// The line at which the depth is led to a position of the program at rapid first, if these axes were led nowhere
+    /// before.
+    pub blind: Option<(u64, String)>,
+    /// Line of the first cycle's end that is a word of motion alone.
+    pub cycle_cut_off: Option<u64>,
     /// Modes that the program has not set, and the lines of the first words whose meaning hangs on them.
     pub relied: Vec<(u64, ModalGroup)>,
     /// Line of the first tap whose cycle no word makes rigid, and how many there are.
@@ -98,6 +105,17 @@ pub struct ReadReport {
     /// The line at which a tool is changed or led to the part first, if these axes, which the machine file retracts, were
     /// led nowhere before: where they stand then is not known.
     pub unretracted: Option<(u64, String)>,
+    /// How the program ends; none: no word of it does that.
+    pub end: Option<ProgramEnd>,
+}
+
+/// The end of a program, and what is in force there: whatever runs next begins with it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProgramEnd {
+    /// Line of the program.
+    pub line: u64,
+    /// What is in force, as messages call it.
+    pub in_force: Vec<&'static str>,
 }
 
 /// Runs blocks one by one.

@@ -6,9 +6,9 @@
 use nalgebra::{Matrix3, Vector3};
 use post_grammar::nc::NcValue;
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::{Joints, Pose};
+use post_machine::kinematics::{Joints, Pose, Trace};
 use post_machine::tilted_plane::rotation;
-use post_plugin::Language;
+use post_plugin::{Language, Meaning};
 
 use super::block_words::BlockWords;
 use super::frame::CoordinateFrame;
@@ -109,6 +109,7 @@ pub(super) fn turn(
 
 /// Ends the tilted plane: `G69`, `G255`, `CYCLE800()`.
 pub(super) fn end(control: &mut ControlState) -> Result<(), Box<Diagnostic>> {
+    control.sets_group(Meaning::TiltedPlaneOff);
     // G69 ends a turn in the plane too.
     let letters = matches!(control.lexicon.language(), Language::Macro | Language::Rs274);
     let turned = letters && !control.frames.inner.is_default();
@@ -171,6 +172,9 @@ pub(super) fn turn_to(
 ) -> Result<Joints, Box<Diagnostic>> {
     let to = solution(control, pick)?;
     let stands = (0..control.machine.axes.len()).all(|place| to[place] == control.at.joints[place]);
+    if how != PlaneTurn::Stay {
+        say_pointing(control, &to);
+    }
     match how {
         _ if stands => {}
         PlaneTurn::Stay => {}
@@ -226,6 +230,19 @@ fn solution(control: &ControlState, pick: SolutionChoice) -> Result<Joints, Box<
             )
             .boxed()),
     }
+}
+
+/// The turn to a plane says where the axes stand that point the tool: one that turns about the tool stays where it was.
+fn say_pointing(control: &mut ControlState, to: &Joints) {
+    let chain = control.state.solver.chain();
+    let mut trace = Trace { joints: *to, turns: chain.turns(to), ..Trace::default() };
+    chain.trace(&mut trace);
+    let points = |place: &usize| {
+        let direction = chain.joints()[*place].direction;
+        direction.cross(&trace.axes[*place]).norm() > UPRIGHT
+    };
+    let said = rotary(control).filter(points).fold(0, |said, place| said | 1 << place);
+    control.said |= said;
 }
 
 /// All ways in which the rotary axes stand upright on the plane in force, next to where they stand and within travel.

@@ -15,7 +15,17 @@ pub enum ModalGroup {
     Plane,
     /// A feed by time, a minute or a revolution.
     Feed,
+    /// Radius compensation: one that is left on shifts the path.
+    Compensation,
+    /// A cycle that drills at each position, until a word ends it.
+    Cycle,
+    /// A tilted plane: one that is left on turns all words.
+    TiltedPlane,
 }
+
+/// Bits of the modes that may have been left on.
+const LEFT_ON: u8 =
+    ModalGroup::Compensation.bit() | ModalGroup::Cycle.bit() | ModalGroup::TiltedPlane.bit();
 
 impl ModalGroup {
     /// The mode that a word with this meaning sets, if it sets one.
@@ -31,6 +41,9 @@ impl ModalGroup {
             | Meaning::FeedPerMinuteAllAxes
             | Meaning::InverseTime
             | Meaning::FeedPerRevolution => Self::Feed,
+            Meaning::CompensationOff => Self::Compensation,
+            Meaning::CycleOff => Self::Cycle,
+            Meaning::TiltedPlaneOff => Self::TiltedPlane,
             _ => return None,
         })
     }
@@ -42,6 +55,9 @@ impl ModalGroup {
             Self::Distance => "absolute or incremental",
             Self::Plane => "plane",
             Self::Feed => "feed mode",
+            Self::Compensation => "radius compensation off",
+            Self::Cycle => "cycles off",
+            Self::TiltedPlane => "tilted planes off",
         }
     }
 
@@ -82,11 +98,21 @@ impl ControlState {
         }
     }
 
+    /// The tool is led to the part by words: what was left on then would lead it elsewhere.
+    #[inline]
+    pub(super) fn relies_on_nothing_left(&mut self) {
+        const LEFT: [ModalGroup; 3] =
+            [ModalGroup::Compensation, ModalGroup::Cycle, ModalGroup::TiltedPlane];
+        if self.modal.unset & LEFT_ON != 0 {
+            LEFT.into_iter().for_each(|group| self.relies_on(group));
+        }
+    }
+
     /// A straight move at feed tells nothing more of what the program relies on: one before it has.
     pub(super) fn has_begun(&self) -> bool {
         let plane = if self.state.compensation != 0 { ModalGroup::Plane.bit() } else { 0 };
         let moves = ModalGroup::Units.bit() | ModalGroup::Distance.bit() | ModalGroup::Feed.bit();
-        self.begun && self.modal.unset & (moves | plane) == 0
+        self.begun && self.modal.unset & (moves | plane | LEFT_ON) == 0
     }
 
     #[cold]

@@ -46,8 +46,32 @@ impl ControlState {
         Ok(())
     }
 
-    /// S changed while the spindle turns.
+    /// The program stops: where the control stops the spindle and the coolant with it, what is on now is off behind it.
+    pub(super) fn stand_still(&mut self) {
+        if !self.lexicon.stops_spindle() {
+            return;
+        }
+        let standstill = &mut self.state.standstill;
+        if !matches!(self.state.spindle, SpindleState::Off | SpindleState::Oriented) {
+            standstill.spindle = Some(self.line);
+        }
+        if self.state.coolants != crate::Coolants::default() {
+            standstill.coolant = Some(self.line);
+        }
+        self.state_changed();
+    }
+
+    /// S changed while the spindle turns. One that a stop has stopped stays so.
     pub(super) fn speed_changed(&mut self) {
+        let standstill = self.state.standstill;
+        self.turn_at_speed();
+        if self.state.standstill != standstill {
+            self.state.standstill = standstill;
+            self.state_changed();
+        }
+    }
+
+    fn turn_at_speed(&mut self) {
         match self.state.spindle {
             SpindleState::Clockwise(_) => self.turn_spindle(SpindleRequest::Clockwise),
             SpindleState::CounterClockwise(_) => {
@@ -80,6 +104,9 @@ impl ControlState {
             SpindleRequest::Off => SpindleState::Off,
             SpindleRequest::Oriented => SpindleState::Oriented,
         };
+        if self.state.standstill.spindle.take().is_some() {
+            self.state_changed();
+        }
         if self.state.spindle != spindle {
             self.state.spindle = spindle;
             self.state_changed();
@@ -112,6 +139,9 @@ impl ControlState {
     }
 
     pub(super) fn flow_of_coolant(&mut self, coolants: crate::Coolants) {
+        if self.state.standstill.coolant.take().is_some() {
+            self.state_changed();
+        }
         if self.state.coolants != coolants {
             self.state.coolants = coolants;
             self.state_changed();

@@ -5,7 +5,7 @@ use super::report::BlockPlace;
 use super::state::{coolant_name, spindle_name};
 use super::track::Element;
 use crate::course::Course;
-use crate::{Coolants, ProgramEvent, SpindleState};
+use crate::{Coolants, Motion, ProgramEvent, SpindleState};
 
 /// What of the program runs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -135,6 +135,28 @@ impl<C: Course> Verifier<'_, C> {
         }
         for (code, message) in change.faults(!spindle, !coolants) {
             self.left_on(change.line, code, message);
+        }
+    }
+
+    /// The tool cuts behind a stop: what the stop has switched off, where the control's does that, should be on again.
+    /// Posting switches it on again in any case.
+    pub(super) fn compare_standstill(&mut self, motion: &Motion, element: &Element) {
+        let (state, asked) = (&motion.state, &element.asked);
+        let spindle = state.standstill.spindle.filter(|_| turns(asked.spindle));
+        let coolant = state.standstill.coolant.filter(|_| self.rules.coolants);
+        let coolant = coolant.filter(|_| asked.coolants != Coolants::default());
+        let off = [("spindle", "the spindle", spindle), ("coolant", "the coolant", coolant)];
+        for (code, what, stop) in off {
+            let Some(stop) = stop else {
+                continue;
+            };
+            let message = format!(
+                "cuts behind the stop on line {stop}, which switches {what} off, and no word switches it on again"
+            );
+            match self.rules.own {
+                true => self.fault(code, message, Some(motion), Some(element.line), None),
+                false => self.left_on(motion.line, code, message),
+            }
         }
     }
 

@@ -99,6 +99,9 @@ pub struct VerifyRules {
     /// The program was posted for this machine file, and is held to what posting promises of rapids besides: what that
     /// is says `retract` and `detour`. A program of another hand leads the tool off the part as it likes.
     pub own: bool,
+    /// Stops and waits that lines of the user's own write, in the machine file and letter for letter in the CL file: they
+    /// come where the user has them.
+    pub own_stops: OwnStops,
     /// Each line of the program is told with the solution that it ends in.
     pub solutions: bool,
     /// Each line of the program is told with its deviations; else some are told without.
@@ -107,6 +110,29 @@ pub struct VerifyRules {
     pub files: SourceFiles,
     /// Most faults that are told apart; then the check is given up.
     pub most_faults: usize,
+}
+
+/// Which stops and waits lines of the user's own write.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OwnStops {
+    /// A stop: M0.
+    pub stop: bool,
+    /// An optional stop: M1.
+    pub optional: bool,
+    /// A wait: G4.
+    pub dwell: bool,
+}
+
+impl OwnStops {
+    /// Whether `event` may come from such a line.
+    fn may_be(self, event: &ProgramEvent) -> bool {
+        match event {
+            ProgramEvent::Stop => self.stop,
+            ProgramEvent::OptionalStop => self.optional,
+            ProgramEvent::Dwell { .. } => self.dwell,
+            _ => false,
+        }
+    }
 }
 
 impl VerifyRules {
@@ -130,6 +156,7 @@ impl VerifyRules {
             files: SourceFiles::default(),
             coolants: true,
             own: false,
+            own_stops: OwnStops::default(),
             solutions: false,
             rows: true,
             most_faults: MOST_FAULTS,

@@ -297,7 +297,9 @@ impl<C: Course> Verifier<'_, C> {
             }
             index += 1;
         }
-        self.other_event(place, event, other);
+        if !self.rules.own_stops.may_be(event) {
+            self.other_event(place, event, other);
+        }
     }
 
     /// The program stops or waits otherwise than it should: in place of the event of the course at `other`, if one is due.

@@ -126,6 +126,7 @@ impl<C: Course> Verifier<'_, C> {
             );
             self.fault("spindle", message, Some(motion), cl_line, None);
         }
+        self.compare_standstill(motion, element);
         self.compare_speeds(motion, element);
         self.compare_change(element);
         if self.rules.coolants && state.coolants != asked.coolants {

@@ -38,6 +38,7 @@ fn state(solver: &Arc<Solver>) -> Arc<MachineState> {
         work_offset: None,
         spindle: SpindleState::Off,
         coolants: Coolants::default(),
+        standstill: Default::default(),
         operation: None,
         smoothing: None,
         corners: Corners::Unsaid,

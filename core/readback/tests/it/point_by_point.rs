@@ -142,6 +142,7 @@ fn what_is_found_does_not_hang_on_whether_each_line_is_told() {
         work_offset: None,
         spindle: SpindleState::Off,
         coolants: Coolants::default(),
+        standstill: Default::default(),
         operation: None,
         smoothing: None,
         corners: Corners::Unsaid,

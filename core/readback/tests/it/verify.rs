@@ -139,6 +139,7 @@ impl Does {
             work_offset: None,
             spindle: SpindleState::Off,
             coolants: Coolants::default(),
+            standstill: Default::default(),
             operation: None,
             smoothing: None,
             corners: Corners::Unsaid,

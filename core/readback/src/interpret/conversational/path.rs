@@ -103,6 +103,7 @@ fn travel(
     target: &MotionTarget,
 ) -> Answer<()> {
     control.begins();
+    control.relies_on_nothing_left();
     let from = control.point();
     control.go(kind, path, target)?;
     let to = control.point();

@@ -35,6 +35,8 @@ pub(super) struct CycleState {
     pub defined: Option<DefinedCycle>,
     /// Called at every point: M89.
     pub at_each: bool,
+    /// A word of motion in this block has ended G73 to G89.
+    pub cut_off: bool,
 }
 
 /// A cycle that `CYCL DEF` has defined.
@@ -190,6 +192,7 @@ fn drill(control: &mut ControlState, hole: &CycleHole) -> Result<(), Box<Diagnos
     control.relies_on(ModalGroup::Plane);
     control.relies_on(ModalGroup::Feed);
     let axis = control.modal.plane.coordinates()[2];
+    control.says_depth(axis);
     let from = control.point();
     let strokes = hole.strokes(from[axis]).map_err(|finding| control.placed(*finding).boxed())?;
     let [in_it, behind] = hole.turning.map_or([None; 2], |turning| turning.map(Some));

@@ -1,0 +1,178 @@
+//! What a program leaves unsaid: where axes stand, modes that hold from whatever ran before or are left to whatever runs
+//! next, and its end. A program of our own says all of that; others have it said elsewhere, perhaps.
+
+use post_host::Finder;
+use post_machine::description::Machine;
+use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
+use post_plugin::Meaning;
+use post_readback::interpret::{ModalGroup, ReadReport};
+
+use super::nc_program::DialectVocabulary;
+use super::plugin_finder;
+
+/// The word that makes the taps behind it rigid, on controls whose dialect names it.
+const RIGID: &str = "M29";
+
+/// A program that was run.
+pub struct Unsaid<'a> {
+    /// The program, as messages call it.
+    pub name: &'a str,
+    /// What its reading found.
+    pub report: &'a ReadReport,
+    /// What its dialect tells of its words.
+    pub spoken: &'a DialectVocabulary,
+    /// It was posted for this machine file.
+    pub own: bool,
+    /// Its last line; none: it was not run to its end.
+    pub last_line: Option<u64>,
+}
+
+impl Unsaid<'_> {
+    /// All that it leaves unsaid on `machine`.
+    pub fn findings(&self, finder: &Finder, machine: &Machine) -> Vec<Diagnostic> {
+        let mut findings = self.starts();
+        findings.extend(self.comes_down());
+        findings.extend(self.cut_off());
+        findings.extend(self.modes(finder, machine));
+        findings.extend(self.retract());
+        findings.extend(self.end());
+        if plugin_finder::text(finder, machine, "tapping").as_deref() == Some("rigid") {
+            findings.extend(self.bare_taps());
+        }
+        findings
+    }
+
+    fn at(&self, line: u64) -> Option<SourcePlace> {
+        Some(SourcePlace::new(self.name, line, "", 0..0))
+    }
+
+    /// An error in a program of our own, else a warning.
+    fn graded(&self, code: &'static str, message: String) -> Diagnostic {
+        match self.own {
+            true => Diagnostic::error(code, message),
+            false => Diagnostic::warning(code, message),
+        }
+    }
+
+    /// Where axes stand that it cuts with. That of rotary ones is said elsewhere where a program of another hand turns none.
+    fn starts(&self) -> Vec<Diagnostic> {
+        let unknown = |(line, axes): &(u64, String), taken: &str| {
+            let message = format!(
+                "the program cuts before it says where {axes} stands: where the machine has it then is not known{taken}"
+            );
+            let help = format!("lead {axes} to a position ahead of the first cut");
+            Diagnostic::error("missing", message).help(help).at(self.at(*line))
+        };
+        let ReadReport { unsaid, unturned, .. } = self.report;
+        let linear = unsaid.iter().map(|unsaid| unknown(unsaid, ""));
+        let rotary = unturned.iter().map(|unturned| match self.own {
+            true => unknown(unturned, ""),
+            false => Diagnostic {
+                severity: Severity::Warning,
+                ..unknown(unturned, ", and is taken to be as the machine file starts")
+            },
+        });
+        linear.chain(rotary).collect()
+    }
+
+    /// Where the tool comes down first.
+    fn comes_down(&self) -> Option<Diagnostic> {
+        let (line, axes) = self.report.blind.as_ref().filter(|_| self.own)?;
+        let message = format!(
+            "the tool comes down before the program says where {axes} stands: it does so wherever the machine has it then"
+        );
+        let help = format!("lead {axes} to a position ahead of it");
+        Some(Diagnostic::error("missing", message).help(help).at(self.at(*line)))
+    }
+
+    /// A cycle that no word of its own ends.
+    fn cut_off(&self) -> Option<Diagnostic> {
+        let line = self.report.cycle_cut_off.filter(|_| self.own)?;
+        let mut words = self.spoken.words.iter();
+        let off = words.find(|word| word.meaning == Meaning::CycleOff)?;
+        let message = format!(
+            "a word of motion alone ends the cycle here, {} does not: where the control lets it go on, the next position is drilled",
+            off.word
+        );
+        let help = format!("write {} ahead of it", off.word);
+        Some(Diagnostic::error("nc-modes", message).help(help).at(self.at(line)))
+    }
+
+    /// Modes that it does not set.
+    fn modes(&self, finder: &Finder, machine: &Machine) -> Option<Diagnostic> {
+        let words = |group: ModalGroup| {
+            let words = self.spoken.words.iter();
+            let words = words.filter(|word| ModalGroup::of(word.meaning) == Some(group));
+            let words: Vec<&str> = words.map(|word| word.word.as_ref()).collect();
+            format!("{} ({})", group.name(), words.join(", "))
+        };
+        let is_told = |group: ModalGroup| match group {
+            ModalGroup::Compensation | ModalGroup::Cycle => self.own,
+            ModalGroup::TiltedPlane => self.own && self.ends_planes(finder, machine),
+            _ => true,
+        };
+        let relied = self.report.relied.iter().filter(|(_, group)| is_told(*group));
+        let (line, _) = relied.clone().next()?;
+        let unset: Vec<String> = relied.map(|(_, group)| words(*group)).collect();
+        let message = format!(
+            "the program does not set {}: what its words mean hangs on what ran before it",
+            unset.join(", nor ")
+        );
+        let help = "set it in the first lines of the program: a reset of the control does not";
+        Some(self.graded("nc-modes", message).help(help).at(self.at(*line)))
+    }
+
+    /// Programs of this machine end a tilted plane that was left on, by the options of their dialect.
+    fn ends_planes(&self, finder: &Finder, machine: &Machine) -> bool {
+        let ends = self.spoken.words.iter();
+        let mut ends = ends.filter(|word| word.meaning == Meaning::TiltedPlaneOff);
+        let lines = plugin_finder::text(finder, machine, "cancel").unwrap_or_default();
+        let mut words = lines.split_whitespace();
+        ends.any(|end| words.any(|word| word == end.word))
+            || plugin_finder::flag(finder, machine, "reset") == Some(true)
+                && machine.axes.iter().any(|axis| axis.joint.rotary)
+    }
+
+    /// Where the tool stands as it begins.
+    fn retract(&self) -> Option<Diagnostic> {
+        let (line, axes) = self.report.unretracted.as_ref().filter(|_| self.own)?;
+        let message = format!(
+            "{axes} is not retracted before the first tool change or the first way to the part: where it stands then is not known"
+        );
+        Some(Diagnostic::error("rapid", message).at(self.at(*line)))
+    }
+
+    /// That it ends, and what it leaves to whatever runs next.
+    fn end(&self) -> Option<Diagnostic> {
+        let last_line = self.last_line.filter(|_| self.own)?;
+        let Some(end) = &self.report.end else {
+            let message = "no word of the program ends it: the control stops there with an alarm, or goes on in what stands behind it";
+            let help = "end it by the control's word: M30, M2, or M99 where it is called";
+            return Some(Diagnostic::error("missing", message).help(help).at(self.at(last_line)));
+        };
+        if end.in_force.is_empty() {
+            return None;
+        }
+        let message = format!(
+            "the program ends with {} in force: whatever runs next begins so",
+            end.in_force.join(" and ")
+        );
+        let help = "switch it off behind the last cut that needs it";
+        Some(Diagnostic::error("nc-modes", message).help(help).at(self.at(end.line)))
+    }
+
+    /// Taps that should be rigid without the word ahead of them that makes them so.
+    fn bare_taps(&self) -> Option<Diagnostic> {
+        let (line, count) = self.report.bare_taps?;
+        let mut words = self.spoken.words.iter();
+        words.find(|word| word.word == RIGID && word.meaning == Meaning::Nothing)?;
+        let holes = if count == 1 { "a hole is".to_owned() } else { format!("{count} holes are") };
+        let message = format!(
+            "{holes} tapped without {RIGID} ahead of the cycle: spindle and feed go together only if a parameter says so, and a tap in a rigid holder breaks"
+        );
+        let help = format!(
+            "write {RIGID} ahead of it, or say tapping = \"floating\" for a holder that gives way"
+        );
+        Some(self.graded("hole", message).help(help).at(self.at(line)))
+    }
+}

@@ -40,6 +40,8 @@ pub struct Snapshot {
 pub struct Document {
     /// As it is now.
     pub now: Arc<Snapshot>,
+    /// It is as it was opened or saved last.
+    pub saved: bool,
     /// The language that the editor takes it for.
     language: String,
     /// What is known of it, and what is being found out.
@@ -61,6 +63,7 @@ impl Document {
         let lines = LineStarts::of(&text);
         Self {
             now: Arc::new(Snapshot { uri, name, version, text, lines }),
+            saved: true,
             language,
             slow: Arc::default(),
             map: Arc::default(),
@@ -92,6 +95,7 @@ impl Document {
             text,
             lines,
         });
+        self.saved = false;
     }
 
     /// Its path, if it is a file.

@@ -339,10 +339,13 @@ impl Server {
             }
             "textDocument/didSave" => {
                 let saved: DidSaveTextDocumentParams = params(value).ok()?;
-                let document = self.documents.get(&saved.text_document.uri.0)?;
-                if document.kind() == Some(FileKind::Machine) {
+                let document = self.documents.get_mut(&saved.text_document.uri.0)?;
+                document.saved = true;
+                match document.kind() {
                     // It may be the machine that the others are shown on.
-                    self.again(|kind| kind != FileKind::Machine);
+                    Some(FileKind::Machine) => self.again(|kind| kind != FileKind::Machine),
+                    Some(FileKind::Nc) => self.changed(&saved.text_document.uri),
+                    _ => {}
                 }
             }
             "textDocument/didClose" => {

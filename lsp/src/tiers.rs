@@ -10,7 +10,7 @@ use super::background::{BackgroundFacts, Outlet, Token, WorkProduct};
 use super::document::{Document, FileKind, Snapshot};
 use super::machine::library::Library;
 use super::{cl, findings, machine, nc};
-use post_job::{machine_files, tools};
+use post_job::{clearance, machine_files, tools};
 
 /// The machine that CL files and programs are shown on.
 #[derive(Clone, Debug, Default)]
@@ -24,6 +24,8 @@ pub struct ShownMachine {
 /// A text and all that work on it needs.
 struct Work {
     of: Arc<Snapshot>,
+    /// The text is the one on the disk.
+    saved: bool,
     slow: Arc<BackgroundFacts>,
     token: Token,
     library: Library,
@@ -44,6 +46,7 @@ pub fn begin(document: &Document, library: &Library, shown: &ShownMachine, to: &
     }
     let work = Work {
         of,
+        saved: document.saved,
         slow: Arc::clone(&document.slow),
         token,
         library: library.clone(),
@@ -125,10 +128,28 @@ impl Work {
             Some(Ok(machine)) => machine,
         };
         let length = self.shown.tool_length;
-        match nc::read(&self.of, machine, length, &self.library, &self.token) {
-            None => {}
-            Some(Err(faults)) => self.tell(&faults, WorkProduct::Nothing),
-            Some(Ok((program, found))) => self.tell(&found, WorkProduct::Program(program)),
+        let control = match nc::control(machine, length, &self.library) {
+            Ok(control) => control,
+            Err(faults) => return self.tell(&faults, WorkProduct::Nothing),
+        };
+        let proves = self.saved && clearance::is_described(&control.machine);
+        let Some(read) = nc::read(&self.of, &control, &self.token) else {
+            return;
+        };
+        let mut found = match read {
+            Err(faults) => return self.tell(&faults, WorkProduct::Nothing),
+            Ok((program, found)) => {
+                self.tell(&found, WorkProduct::Program(program));
+                found
+            }
+        };
+        if proves {
+            let more = nc::not_clear(&self.of, &control, &self.token);
+            // What cannot be read of it was told.
+            found.extend(
+                more.into_iter().filter(|finding| !found.contains(finding)).collect::<Vec<_>>(),
+            );
+            self.tell(&found, WorkProduct::Nothing);
         }
     }
 }

@@ -75,7 +75,8 @@ class Found:
     """What reading a program back, or predicting it, has found."""
 
     json: str
-    """The bytes that ``--summary`` of ``post verify`` or ``post predict`` writes."""
+    """The bytes that ``--summary`` of ``post verify`` or ``post predict`` writes; of clearance what that of ``post
+    --clearance`` has under that key."""
     warnings: tuple[Diagnostic, ...]
 
     @cached_property
@@ -137,6 +138,15 @@ class Job:
         """
         return found(self._native.verify())
 
+    def clearance(self) -> Found:
+        """Proves that nothing hits anything while the program runs, as ``post clearance --cl`` with the CL file: the bodies
+        of the machine file are held against one another along all motions. ``found.summary["pairs"]`` has of each pair
+        what it is proven to be apart.
+
+        Raises :class:`PostError` if something is not clear.
+        """
+        return found(self._native.clearance())
+
     def predict(self, period: float | None = None) -> Found:
         """Predicts what the program does on its machine, as ``post predict --against`` the CL file: cycle time, true feed,
         and how far the tool strays. ``period`` is the time between set-points, s, over that of the machine file.
@@ -152,13 +162,14 @@ class Job:
         path: Path,
         *,
         verify: bool = False,
+        clearance: bool = False,
         predict: bool = False,
         max_mb: int = 64,
     ) -> None:
         """Writes a page to look at, one HTML file that any browser shows from the disk, as ``--report``; with what
-        ``--verify`` and ``--predict`` find, if they are asked for. The program is made once more for it.
+        ``--verify``, ``--clearance`` and ``--predict`` find, if they are asked for. The program is made once more for it.
         """
-        self._native.report(os.fspath(path), verify, predict, max_mb)
+        self._native.report(os.fspath(path), verify, clearance, predict, max_mb)
 
 
 def found(told: tuple[str, list[Told]]) -> Found:

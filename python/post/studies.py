@@ -99,6 +99,7 @@ def study(
     workers: int | None = None,
     resume: Path | None = None,
     verify: bool = False,
+    clearance: bool = False,
     predict: bool = False,
     plan: bool = False,
     trust_model: bool = False,
@@ -124,7 +125,7 @@ def study(
 
     ``engine="threads"`` works on ``workers`` threads of this process. ``engine="ray"`` works on the Ray cluster that is
     connected, or on a local one with ``workers`` processors: CL files and machine files go there by content, so that no node
-    needs a folder of them (libraries of ``plugins`` must be on every node, under the same path). The results are the
+    needs a folder of them (libraries of ``plugins``, and with ``clearance`` STL files of bodies, must be on every node, under the same path). The results are the
     same, to the byte.
 
     A job that is refused is a row. ``resume`` names a file that keeps what is done, by content: what is in it is not done
@@ -143,6 +144,7 @@ def study(
     options = told(
         {
             "verify": verify,
+            "clearance": clearance,
             "predict": predict,
             "plan": plan,
             "trust_model": trust_model,

@@ -47,6 +47,11 @@ impl Job {
         apart(py, |stop| self.made.verify(stop)).map(given)
     }
 
+    /// How near its bodies come to one another: JSON, and warnings.
+    fn clearance(&self, py: Python<'_>) -> PyResult<(String, Vec<DiagnosticFields>)> {
+        apart(py, |stop| self.made.clearance(stop)).map(given)
+    }
+
     /// What is predicted: JSON, and warnings.
     fn predict(
         &self,
@@ -62,10 +67,11 @@ impl Job {
         py: Python<'_>,
         page: PathBuf,
         verify: bool,
+        clearance: bool,
         predict: bool,
         most_megabytes: u64,
     ) -> PyResult<()> {
-        let told = ReportOptions { verify, predict, most_megabytes };
+        let told = ReportOptions { verify, clearance, predict, most_megabytes };
         apart(py, |stop| self.made.report(stop, &page, told))
     }
 

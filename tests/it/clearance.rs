@@ -4,6 +4,7 @@
 use std::fs;
 
 use post_testkit::{assert_contains, randomised};
+use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::common::{post_in, root, sample};
@@ -106,7 +107,136 @@ fn pairs_that_are_left_out_are_left_out_and_names_must_be_of_something() {
     describe(&folder, &format!("{fixture}ignore = [[\"pots\", \"cutter\"]]\n"));
     let (said, clear) = proven(&folder, &[]);
     assert!(!clear);
-    assert_contains(&said, &["[clearance] ignore names pots"]);
+    assert_contains(
+        &said,
+        &["[clearance] names pots", "--> bodies.toml:", "known are post, w, b, t, stock, holder"],
+    );
+}
+
+#[test]
+fn a_pair_keeps_a_distance_of_its_own() {
+    let fixture = "[fixture.post]\nblock = [[60, -60, 0], [90, 60, 40]]\n[clearance]\n";
+    let folder = folder(fixture);
+    // They come as near as 4.4 mm at feed.
+    for (pairs, is_clear) in [
+        ("{ between = [\"holder\", \"post\"], keep = 5 }", false),
+        ("{ between = [\"post\", \"holder T3\"], keep = 5 }", false),
+        ("{ between = [\"holder\", \"stock\"], keep = 5 }", true),
+        ("{ between = [\"holder\", \"post\"], keep = 0, rapid = 5 }", true),
+        // The last holds.
+        (
+            "{ between = [\"t\", \"w\"], keep = 5 }, { between = [\"holder\", \"post\"], keep = 1 }",
+            true,
+        ),
+    ] {
+        describe(&folder, &format!("{fixture}pairs = [{pairs}]\n"));
+        let (said, clear) = proven(&folder, &[]);
+        assert_eq!(clear, is_clear, "{pairs}: {said}");
+        assert!(clear || said.contains("of holder T3; 5 mm are to be kept"), "{said}");
+    }
+    // Others keep what is kept by all.
+    describe(
+        &folder,
+        &format!(
+            "{fixture}keep = 25\npairs = [{{ between = [\"holder\", \"post\"], keep = 1 }}]\n"
+        ),
+    );
+    let (said, clear) = proven(&folder, &[]);
+    assert!(!clear);
+    assert_contains(&said, &["stock comes within"]);
+    describe(
+        &folder,
+        "[clearance]\npairs = [{ between = [\"cutter T3\", \"stock\"], keep = 1 }]\n",
+    );
+    assert_contains(&proven(&folder, &[]).0, &["no distance is kept between cutter and stock"]);
+}
+
+/// The program is proven before it gets its name, and what is said names the line of the CL file.
+#[test]
+fn a_program_that_is_not_clear_is_not_written() {
+    let folder = folder("");
+    let blade = root().join(sample("blade.cls"));
+    let blade = blade.to_str().unwrap();
+    let post = |more: &[&str]| {
+        let words =
+            ["-m", "bodies.toml", blade, "-o", "new.nc", "--summary", "new.json", "--clearance"];
+        post_in(folder.path(), &[&words[..], more].concat())
+    };
+    let high =
+        ["--set", "stock.block=[[-50,-30,0],[50,30,36]]", "--set", "clearance.rapid_axes=together"];
+    let run = post(&high);
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert_contains(
+        &run.err,
+        &["stock hits cutter T3", "blade.cls, line 16)", "new.nc:18", "nothing was written"],
+    );
+    assert!(!folder.path().join("new.nc").exists() && !folder.path().join("new.json").exists());
+    // `post clearance` says the same of the program that is written without.
+    let (said, _) = proven(&folder, &high);
+    let first = |said: &str| {
+        said.lines().find_map(|line| Some(line.split_once("error[clearance]: ")?.1.to_owned()))
+    };
+    let told = first(&run.err).unwrap();
+    assert_eq!(told.strip_suffix(&format!(" ({blade}, line 16)")), first(&said).as_deref());
+    // One that is clear is the same as without.
+    let run = post(&[]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert_contains(&run.out, &["clearance", "2 pairs of bodies proven to stay apart by"]);
+    let text = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(text("new.nc").replace("NEW", "BLADE"), text("blade.nc"));
+    let summary: Value = serde_json::from_str(&text("new.json")).unwrap();
+    let (table, _) = proven(&folder, &[]);
+    let pairs = summary["clearance"]["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), 2);
+    for pair in pairs {
+        let nearest = format!("{:.3}", pair["nearest_mm"].as_f64().unwrap());
+        assert!(pair["clear_by_mm"].as_f64() <= pair["nearest_mm"].as_f64());
+        assert_contains(&table, &[&nearest]);
+    }
+}
+
+#[test]
+fn verify_batches_and_job_files_prove_as_posting_does() {
+    let folder = folder("");
+    let blade = root().join(sample("blade.cls"));
+    let blade = blade.to_str().unwrap();
+    let verify = |more: &[&str]| {
+        let words = ["verify", "blade.nc", "-m", "bodies.toml", "--against", blade, "--clearance"];
+        post_in(folder.path(), &[&words[..], more].concat())
+    };
+    let run = verify(&["--summary", "v.json"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert_contains(&run.out, &["pairs of bodies", "stock  holder T3"]);
+    let text = fs::read_to_string(folder.path().join("v.json")).unwrap();
+    let summary: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(summary["clearance"]["pairs"].as_array().unwrap().len(), 2);
+    let run = verify(&["--set", "clearance.keep=30"]);
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert_contains(&run.err, &["stock comes within", "30 mm are to be kept", "blade.cls, line "]);
+    // A batch has columns of it, and refuses.
+    let job = |keep: u32| {
+        format!(
+            "{{\"file\": {blade:?}, \"machine\": \"bodies.toml\", \"set\": {{\"clearance.keep\": {keep}}}}}\n"
+        )
+    };
+    fs::write(folder.path().join("jobs.jsonl"), job(0) + &job(30)).unwrap();
+    let run = post_in(folder.path(), &["batch", "jobs.jsonl", "--clearance", "-o", "rows.jsonl"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let rows = fs::read_to_string(folder.path().join("rows.jsonl")).unwrap();
+    let rows: Vec<Value> = rows.lines().map(|row| serde_json::from_str(row).unwrap()).collect();
+    assert_eq!(rows[0]["nearest_approach_bodies"], "stock / cutter T3");
+    assert_eq!(rows[0]["clear_by_mm"], summary["clearance"]["pairs"][0]["clear_by_mm"]);
+    assert_eq!((&rows[0]["state"], &rows[1]["state"]), (&"written".into(), &"refused".into()));
+    assert_eq!(rows[1]["codes"], "clearance");
+    // A job file asks for it, and brings a stock of its own.
+    let job = format!(
+        "machine = \"bodies.toml\"\ncl = {blade:?}\noutput = \"job.nc\"\nclearance = true\n\
+         set = {{ \"fixture.clamp.block\" = [[-10, -10, 0], [10, 10, 60]] }}\n"
+    );
+    fs::write(folder.path().join("part.job.toml"), job).unwrap();
+    let run = post_in(folder.path(), &["part.job.toml"]);
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert_contains(&run.err, &["clamp hits cutter T3"]);
 }
 
 #[test]
@@ -136,6 +266,8 @@ fn bodies_that_cannot_be_are_refused_by_their_line() {
         ("[fixture.a]\nfile = \"a.step\"\n", "no name of an STL file"),
         ("[fixture.a]\nfile = \"a.stl\"\n", "there is no such regular file"),
         ("[clearance]\nkeep = -1\n", "[clearance] keep is -1 mm"),
+        ("[fixture.stock]\nblock = [[0, 0, 0], [9, 9, 9]]\n", "a fixture cannot be called stock"),
+        ("[fixture.A]\nblock = [[0, 0, 0], [9, 9, 9]]\n", "a fixture cannot be called A"),
         ("[tools.4]\nholder = [[0, -5], [3, 5]]\n", "the holder of tool 4 has the radius -5 mm"),
     ] {
         describe(&folder, more);

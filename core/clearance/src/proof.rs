@@ -4,6 +4,8 @@
 //! follows: it is a budget that motions use up, and it is computed again where it is spent. Where that is not enough the
 //! way is halved.
 
+mod closest;
+
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joint, Joints};
 
@@ -125,6 +127,8 @@ struct Pair {
     smaller: usize,
     known: Option<Known>,
     guess: [usize; 2],
+    /// Other rules than those of all pairs.
+    rules: Option<Rules>,
     result: PairResult,
 }
 
@@ -167,6 +171,15 @@ impl Proof {
             }
         }
         Self { axes: axes.to_vec(), rules, bodies, pairs, last: None, distances: 0 }
+    }
+
+    /// The same with other rules for some pairs.
+    pub fn with_rules(mut self, of: impl Fn(&Body, &Body) -> Option<Rules>) -> Self {
+        for pair in &mut self.pairs {
+            let [one, other] = pair.result.bodies.map(|place| &self.bodies[place]);
+            pair.rules = of(one, other);
+        }
+        self
     }
 
     /// The bodies.
@@ -220,6 +233,7 @@ impl Proof {
                 continue;
             }
             let touches = [one.kind, other.kind];
+            let rules = pair.rules.as_ref().unwrap_or(rules);
             let keep = match (motion.rapid, touches) {
                 // A rapid begins and ends as near to what is cut as the CL file has it.
                 (_, [BodyKind::Cutter, BodyKind::Stock] | [BodyKind::Stock, BodyKind::Cutter]) => {
@@ -228,7 +242,8 @@ impl Proof {
                 (true, _) => rules.rapid,
                 (false, _) => rules.keep,
             };
-            let trial = Trial { bodies, motion, keep: keep.max(ALLOWANCE), within: rules.within };
+            let within = rules.within;
+            let trial = Trial { bodies, motion, keep: keep.max(ALLOWANCE), within };
             *distances += pair.take(&trial, whole.as_ref());
         }
     }
@@ -266,6 +281,7 @@ impl Pair {
             smaller,
             known: None,
             guess: [0; 2],
+            rules: None,
             result,
         }
     }

@@ -124,7 +124,8 @@ impl<'a> Conversion<'a> {
 
     /// The first program, from its beginning.
     fn run(&self) -> Result<FedRapids<RunningProgram<'static>>, Failure> {
-        self.from.program_with_rapids(&self.program)
+        let program = &self.program;
+        self.from.program_with_rapids(&program.name, Box::new(program.text()?))
     }
 
     /// Chords of the CL file.

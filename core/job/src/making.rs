@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use post_host::Finder;
 use post_machine::description::{Machine, Setting};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Severity};
 use post_plugin::DialectSession as _;
 use post_posting::plan::PlanWatch;
 use post_posting::report::PostingReport;
@@ -14,6 +14,7 @@ use post_readback::interpret::Limits;
 use post_readback::verify::Verification;
 
 use crate::JobMachine;
+use crate::clearance::{self, ClearanceFound, Hearer};
 use crate::compensate::{self, ServoCompensation, ShiftedPath};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
@@ -125,6 +126,8 @@ impl ProgramSink for AtomicFile {
 pub struct ProgramRequest<'w, 'o, 'p> {
     /// It is read back and held against the CL file.
     pub verify: bool,
+    /// It is read back, and it is proven that nothing hits anything.
+    pub clearance: bool,
     /// What it does is predicted.
     pub predict: bool,
     /// Sees its plan.
@@ -147,6 +150,8 @@ pub struct ProgramOutcome {
     pub compensation: Option<compensate::CompensationSummary>,
     /// What reading it back found.
     pub verification: Option<Verification>,
+    /// What was proven of it: nothing hits anything.
+    pub clearance: Option<ClearanceFound>,
     /// What is predicted of it.
     pub prediction: Option<Prediction>,
 }
@@ -157,6 +162,7 @@ impl ProgramOutcome {
         SummaryJson {
             report: &self.report,
             verification: self.verification.as_ref(),
+            clearance: self.clearance.as_ref().map(ClearanceFound::summary),
             prediction: self.prediction.as_ref(),
             servo_compensation: self.compensation.as_ref(),
             plan_rounds: self.plan_rounds.as_ref(),
@@ -270,7 +276,7 @@ impl<'a> ProgramMaker<'a> {
         wanted: ProgramRequest<'_, '_, '_>,
         findings: &mut Vec<Diagnostic>,
     ) -> Result<ProgramOutcome, Failure> {
-        let ProgramRequest { verify, predict, watch, observer, page } = wanted;
+        let ProgramRequest { verify, clearance, predict, watch, observer, page } = wanted;
         let mut rows = match &page {
             Some(_) => Some(self.rows(part, source, predict)?),
             None => None,
@@ -290,6 +296,15 @@ impl<'a> ProgramMaker<'a> {
                 return Err(std::mem::take(findings).into());
             }
             outcome.verification = Some(held.found);
+        }
+        if clearance {
+            let program = ProgramInput { name: text.name(), text: text.reread()? };
+            let mut proven = self.prove(part, outcome.moved, source, program, None)?;
+            findings.append(&mut proven.findings);
+            if findings.iter().any(|finding| finding.severity == Severity::Error) {
+                return Err(std::mem::take(findings).into());
+            }
+            outcome.clearance = Some(proven);
         }
         let mut heard = None;
         if predict {
@@ -335,8 +350,15 @@ impl<'a> ProgramMaker<'a> {
         let Some(report) = report else {
             return Err(std::mem::take(findings).into());
         };
-        let (verification, prediction) = (None, None);
-        Ok(ProgramOutcome { report, moved, plan_rounds, compensation, verification, prediction })
+        Ok(ProgramOutcome {
+            report,
+            moved,
+            plan_rounds,
+            compensation,
+            verification: None,
+            clearance: None,
+            prediction: None,
+        })
     }
 
     /// What a page is told of a program.
@@ -360,7 +382,7 @@ impl<'a> ProgramMaker<'a> {
                 true => "plan",
                 false => "post",
             },
-            facts: summary::facts(&outcome.report, outcome.verification.as_ref()),
+            facts: summary::facts(&outcome.told()),
         }
     }
 
@@ -389,11 +411,33 @@ impl<'a> ProgramMaker<'a> {
         source: &mut ClSource,
         program: ProgramInput<'_>,
     ) -> Result<VerifiedProgram, Failure> {
+        let ProgramInput { name, text } = program;
+        read_back::verify(&self.reading(part, moved), source, &name, text, &mut Unwatched)
+    }
+
+    /// Reads a program back and proves that nothing hits anything; who `hear`s is told of motions.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn prove(
+        &self,
+        part: &ProgramPart,
+        moved: bool,
+        source: &mut ClSource,
+        program: ProgramInput<'_>,
+        hear: Option<&mut Hearer<'_>>,
+    ) -> Result<ClearanceFound, Failure> {
+        let ProgramInput { name, text } = program;
+        clearance::of_job(&self.reading(part, moved), source, &name, text, hear)
+    }
+
+    /// What a program is read back with; `moved` if its points were moved for the servos.
+    fn reading<'p>(&'p self, part: &'p ProgramPart, moved: bool) -> ReadingSetup<'p> {
         // What was moved on purpose is off the CL file by that.
         let accuracy = &part.machine.accuracy;
         let bound = accuracy.servo_compensation.filter(|_| moved);
         let moved = bound.map(|bound| accuracy.tolerance + bound);
-        let reading = ReadingSetup {
+        ReadingSetup {
             session: self.session,
             arguments: self.job,
             machine: &part.machine,
@@ -409,9 +453,7 @@ impl<'a> ProgramMaker<'a> {
             own: true,
             lines: part.ranges(),
             threads: self.threads,
-        };
-        let ProgramInput { name, text } = program;
-        read_back::verify(&reading, source, &name, text, &mut Unwatched)
+        }
     }
 
     /// Predicts what a program does, for the page too if `heard` is given; `period` between set-points, s, over the machine file's.

@@ -124,22 +124,23 @@ impl NcControl {
         Ok(program.declaring(own_lines.iter().map(String::as_str)))
     }
 
-    /// The program in `file` from its beginning, its rapids at feed told from cuts.
+    /// The program in `input`, which messages call `name`, from its beginning, its rapids at feed told from cuts.
     ///
     /// # Errors
-    /// The file cannot be read again, or the machine not be solved.
-    pub fn program_with_rapids(
+    /// It cannot be read again, or the machine not be solved.
+    pub fn program_with_rapids<'i>(
         &self,
-        file: &ProgramFile,
-    ) -> Result<FedRapids<RunningProgram<'static>>, Failure> {
-        let program = || -> Result<_, Failure> {
-            Ok(self.program(&file.name, file.text()?).map_err(|fault| *fault)?)
-        };
+        name: &str,
+        mut input: ProgramText<'i>,
+    ) -> Result<FedRapids<RunningProgram<'i>>, Failure> {
         let Some(kept) = fed_rapids(&self.machine, self.spoken.rapids_pass()) else {
-            return Ok(FedRapids::none(program()?));
+            return Ok(FedRapids::none(self.program(name, input).map_err(|fault| *fault)?));
         };
-        let turns = turns_the_spindle(&mut program()?);
-        Ok(FedRapids::new(program()?, &self.machine, kept, turns))
+        let turns = turns_the_spindle(&mut self.program(name, &mut input).map_err(|fault| *fault)?);
+        let again = input.rewind();
+        again.map_err(|error| FileFault::Read { name: name.to_owned(), error })?;
+        let program = self.program(name, input).map_err(|fault| *fault)?;
+        Ok(FedRapids::new(program, &self.machine, kept, turns))
     }
 }
 

@@ -67,6 +67,23 @@ impl ReadingSetup<'_> {
     fn runs_beside(&self) -> bool {
         self.threads > NonZeroUsize::MIN
     }
+
+    /// The control that runs the program; `tools` are those of the CL file.
+    ///
+    /// # Errors
+    /// The dialect cannot be opened, or tells no vocabulary.
+    pub fn control(&self, tools: &[ClTool]) -> Result<NcControl, Failure> {
+        let spoken = nc_program::spoken(self.finder, self.machine)?;
+        let offsets = match &self.offsets {
+            Some(offsets) => Offsets {
+                // Of tools whose length stands in no table.
+                length: offsets.length.or(self.arguments.over.tool_length),
+                ..offsets.clone()
+            },
+            None => offsets(self.arguments, self.machine, tools),
+        };
+        Ok(NcControl::of(self.machine, spoken, offsets, self.limits))
+    }
 }
 
 /// What came of it.
@@ -290,16 +307,7 @@ pub fn hold<C: Course>(
 ) -> Result<VerifiedProgram, Failure> {
     let machine = reading.machine;
     let VerifyReference { course, files, tools, own_lines, cut_path } = against;
-    let spoken = nc_program::spoken(reading.finder, machine)?;
-    let offsets = match &reading.offsets {
-        Some(offsets) => Offsets {
-            // Of tools whose length stands in no table.
-            length: offsets.length.or(reading.arguments.over.tool_length),
-            ..offsets.clone()
-        },
-        None => offsets(reading.arguments, machine, &tools),
-    };
-    let mut control = NcControl::of(machine, spoken, offsets, reading.limits);
+    let mut control = reading.control(&tools)?;
     control.own_lines = own_lines;
     let rules = VerifyRules {
         rows: watch.wants_lines(),

@@ -10,6 +10,7 @@ use post_posting::report::{
 use post_readback::verify::Verification;
 use serde::Serialize;
 
+use crate::clearance::ClearanceSummary;
 use crate::files::PathArg;
 use crate::operations::LONGEST_LIST;
 use crate::predict::Prediction;
@@ -26,6 +27,9 @@ pub struct SummaryJson<'a> {
     /// What reading the program back has found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<&'a Verification>,
+    /// What was proven of it: nothing hits anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<ClearanceSummary>,
     /// What is predicted of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub prediction: Option<&'a Prediction>,
@@ -37,28 +41,22 @@ pub struct SummaryJson<'a> {
     pub plan_rounds: Option<&'a plan_rounds::PlanRoundsSummary>,
 }
 
-/// The summary of a program at `target` that was made from the CL file named `input`, and what reading it back has found,
-/// if it was.
-pub fn text(
-    report: &PostingReport,
-    read_back: Option<&Verification>,
-    input: &str,
-    target: &PathArg,
-) -> String {
+/// The summary of a program at `target` that was made from the CL file named `input`.
+pub fn text(found: &SummaryJson<'_>, input: &str, target: &PathArg) -> String {
     let target = match target.path() {
         Some(path) => path.display().to_string(),
         None => "standard output".to_owned(),
     };
     let mut told = NamedValues::default();
     told.row("program", format_args!("{target}, from {input}"));
-    rows(&mut told, report, read_back, origin);
+    rows(&mut told, found, origin);
     told.lines(16)
 }
 
 /// The same for the report: without folders, which are others elsewhere.
-pub fn facts(report: &PostingReport, read_back: Option<&Verification>) -> Vec<[String; 2]> {
+pub fn facts(found: &SummaryJson<'_>) -> Vec<[String; 2]> {
     let mut told = NamedValues::default();
-    rows(&mut told, report, read_back, |plugin| match &plugin.hash {
+    rows(&mut told, found, |plugin| match &plugin.hash {
         Some(hash) => hash.clone(),
         None => "built in".to_owned(),
     });
@@ -75,12 +73,8 @@ fn origin(plugin: &PluginUse) -> String {
 }
 
 /// What the summary tells of a program.
-fn rows(
-    rows: &mut NamedValues,
-    report: &PostingReport,
-    read_back: Option<&Verification>,
-    origin: impl Fn(&PluginUse) -> String,
-) {
+fn rows(rows: &mut NamedValues, found: &SummaryJson<'_>, origin: impl Fn(&PluginUse) -> String) {
+    let SummaryJson { report, verification, clearance, .. } = found;
     rows.row("machine", format_args!("{}, the {} keeps the tip", report.machine, report.tcp));
     for (plugin, kind) in report.plugins.iter().zip(["dialect", "error model"]) {
         let PluginUse { name, version, .. } = plugin;
@@ -118,7 +112,8 @@ fn rows(
         "rapids",
         report.rapids_along_axes.then(|| along_axes(report, report.rapid_deviation_mm)),
     );
-    rows.row_if("read back", read_back.map(as_asked));
+    rows.row_if("read back", verification.map(as_asked));
+    rows.row_if("clearance", clearance.as_ref().map(ClearanceSummary::fact));
     for used in report.axes.iter().filter(|axis| axis.min <= axis.max) {
         rows.row(format_args!("axis {}", used.name), used_of(used));
     }

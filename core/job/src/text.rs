@@ -15,6 +15,12 @@ pub fn at_most(value: f64, decimals: u8) -> String {
     number(libm::ceil(value * scale - 1e-3) / scale, decimals)
 }
 
+/// A bound from below, not negative, with so many decimals: rounded down, but for a thousandth of the last of them.
+pub fn at_least(value: f64, decimals: u8) -> String {
+    let scale = libm::pow(10.0, f64::from(decimals));
+    number(libm::floor(value * scale + 1e-3) / scale, decimals)
+}
+
 /// A time as one says it.
 pub fn clock(seconds: f64) -> String {
     let whole = seconds as u64;

@@ -4,6 +4,7 @@ use std::io::Cursor;
 use std::sync::Arc;
 
 use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::VocabularyWord;
 use post_readback::interpret::Limits;
@@ -12,6 +13,7 @@ use post_readback::{BlockEffect, MachineState, MotionKind, Offsets, ProgramEvent
 use crate::background::{Token, WorkResult};
 use crate::document::Snapshot;
 use crate::machine::library::Library;
+use post_job::failure::Failure;
 use post_job::nc_program::{self, NcControl};
 use post_job::plugin_finder;
 
@@ -59,25 +61,24 @@ impl InterpretedProgram {
     }
 }
 
-/// Reads a program back. None if the work is given up.
-pub fn read(
-    of: &Snapshot,
+/// The control of a machine that runs programs, every tool so long, mm.
+///
+/// # Errors
+/// Why its dialect cannot be used.
+pub fn control(
     machine: Machine,
     tool_length: Option<f64>,
     library: &Library,
-    token: &Token,
-) -> WorkResult<InterpretedProgram> {
-    let finder = match plugin_finder::finder(&library.session, &library.plugins) {
-        Ok(finder) => finder,
-        Err(faults) => return Some(Err(faults)),
-    };
-    let spoken = match nc_program::spoken(&finder, &machine) {
-        Ok(spoken) => spoken,
-        Err(refused) => return Some(Err(refused.findings())),
-    };
+) -> Result<NcControl, Vec<Diagnostic>> {
+    let finder = plugin_finder::finder(&library.session, &library.plugins)?;
+    let spoken = nc_program::spoken(&finder, &machine).map_err(Failure::findings)?;
     let offsets = Offsets { length: tool_length, ..Offsets::default() };
     let limits = Limits { blocks: MOST_BLOCKS, ..Limits::default() };
-    let control = NcControl::of(&machine, spoken, offsets, limits);
+    Ok(NcControl::of(&machine, spoken, offsets, limits))
+}
+
+/// Reads a program back. None if the work is given up.
+pub fn read(of: &Snapshot, control: &NcControl, token: &Token) -> WorkResult<InterpretedProgram> {
     let mut run = match control.run(&of.name, Cursor::new(of.text.as_bytes())) {
         Ok(run) => run,
         Err(fault) => return Some(Err(vec![*fault])),
@@ -110,8 +111,11 @@ pub fn read(
     lines.reverse();
     lines.dedup_by_key(|run| run.line);
     lines.reverse();
-    let program =
-        InterpretedProgram { machine: Box::new(machine), words: control.spoken.words, lines };
+    let program = InterpretedProgram {
+        machine: Box::new(control.machine.clone()),
+        words: control.spoken.words.clone(),
+        lines,
+    };
     Some(Ok((program, found)))
 }
 

@@ -118,6 +118,7 @@ impl PostArguments {
             || self.looks_ahead(machine)
             || machine.wants_planes(true)
             || self.outputs.0.verify
+            || self.outputs.0.clearance
             || self.report.0.report.is_some()
             || self.outputs.0.predict.is_some()
     }
@@ -207,8 +208,14 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         let page = pages.next().map(|page| (page, arguments.report.0.most()));
         let (map, source) = (maps.next(), &mut source);
         let (outcome, pictures) = shown::show(&part.machine, &part.target, map, draws, |watch| {
-            let (verify, predict) = (outputs.verify, outputs.predict.is_some());
-            let wanted = ProgramRequest { verify, predict, watch, observer: None, page };
+            let wanted = ProgramRequest {
+                verify: outputs.verify,
+                clearance: outputs.clearance,
+                predict: outputs.predict.is_some(),
+                watch,
+                observer: None,
+                page,
+            };
             maker.make(part, ready, source, text, wanted, &mut findings)
         })?;
         drawn.extend(pictures);
@@ -295,8 +302,7 @@ fn print(
     let further = maker.job.reading.then.iter().filter_map(PathArg::path);
     let name = further.fold(name, |name, path| format!("{name}, {}", path.display()));
     for (part, outcome) in parts.iter().zip(outcomes) {
-        let read_back = outcome.verification.as_ref();
-        let mut text = summary::text(&outcome.report, read_back, &name, &part.target);
+        let mut text = summary::text(&outcome.told(), &name, &part.target);
         if let Some(found) = &outcome.compensation {
             text.push_str(&compensate::text(found));
         }

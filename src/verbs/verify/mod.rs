@@ -9,6 +9,7 @@ use post_cli::arguments::flag_values::file;
 use post_cli::arguments::flag_values::positive;
 use post_cli::arguments::{Flags, JobFlags};
 use post_cli::terminal;
+use post_job::clearance;
 use post_job::failure::Failure;
 use post_job::files::PathArg;
 use post_job::session::Session;
@@ -31,6 +32,7 @@ use post_job::verify::{Verified, VerifyRequest, verify};
   post verify part.job.toml
   post verify part.nc -m ac-trunnion --against part.cls --tool-length 120 --map map.json
   post verify part.nc -m my-mill.toml --against part.cls --tolerance 0.01 --summary -
+  post verify part.nc -m mill-with-vise.toml --against part.cls --clearance
 
 Exit codes: 0 the program does what the CL file asks for; 1 it does not, the messages say where, or something could not be
 read; 2 the command line is wrong.")]
@@ -81,6 +83,11 @@ pub struct VerifyArguments {
     #[arg(long)]
     planned: bool,
 
+    /// Proves besides that nothing hits anything (`post clearance`): the bodies of the machine file are held against one
+    /// another along all motions.
+    #[arg(long)]
+    clearance: bool,
+
     /// Is not compared: `coolant`, where words of the machine or of yours (`[codes]`, `INSERT`, a plugin) switch it, and the
     /// control knows more of them than the CL file names; `work-offset`, where the CL file names none and the program cuts in
     /// another than the dialect's option `work_offset` (Heidenhain's `preset`). Repeatable.
@@ -121,14 +128,20 @@ pub fn run(session: &Session, arguments: &VerifyArguments) -> Result<(), Failure
         posted: arguments.posted,
         any_coolant: arguments.ignore.contains(&Ignored::Coolant),
         any_work_offset: arguments.ignore.contains(&Ignored::WorkOffset),
+        clearance: arguments.clearance,
         map: arguments.map.clone(),
         summary: arguments.summary.clone(),
         report: arguments.report.0.clone(),
         threads: arguments.threads.0.clone(),
     };
-    let Verified { name, machine, held, tolerances, printed } = verify(session, &request)?;
+    let Verified { name, machine, held, clearance, tolerances, printed } =
+        verify(session, &request)?;
     if !arguments.quiet {
-        let text = verify_text::text(&held, &machine, &name, tolerances);
+        let mut text = verify_text::text(&held, &machine, &name, tolerances);
+        if let Some(proven) = &clearance {
+            text.push('\n');
+            text.push_str(&clearance::text::text(proven));
+        }
         terminal::print_beside(session, &text, printed);
     }
     if held.is_wrong() {

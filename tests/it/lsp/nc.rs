@@ -4,7 +4,7 @@ use std::fs;
 use std::thread;
 use std::time::Duration;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::client::{Client, place, uri};
 use crate::common::{assert_contains, post_in, with_file};
@@ -85,6 +85,40 @@ fn what_holds_at_a_line_and_the_cl_line_it_came_from_are_told() {
     // Words say what they mean, however they are joined.
     let (line, column) = place(&text, "G21", 1);
     assert_contains(&client.hover(&program, line, column), &["`G21`: millimetre"]);
+}
+
+/// Saved programs are proven, edited ones are not until they are saved again.
+#[test]
+fn what_hits_something_is_told_where_a_program_is_opened_or_saved() {
+    let machine = "extends = \"vmc\"\nname = \"mine\"\n[workpiece]\nmount = [0, 0, -300]\n[tools.1]\nlength = 100\n\
+                   cutter = [[0, 5], [60, 5]]\n[fixture.clamp]\nblock = [[-20, -20, -330], [20, 20, -300]]\n";
+    let folder = with_file("mine.toml", machine);
+    let program = |z: &str| {
+        format!(
+            "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z0.\nT1 M6\nS1000 M3\nG54\nG0 X0. Y0.\nG43 H1 Z50.\nG1 Z{z} \
+             F500.\nG0 Z50.\nG53 G0 Z0.\nM30\n%\n"
+        )
+    };
+    let path = folder.path().join("part.nc");
+    fs::write(&path, program("-5.")).unwrap();
+    let uri = uri(&path);
+    let machine = folder.path().join("mine.toml");
+    let options = json!({ "machine": machine.to_str().unwrap() });
+    let mut client = Client::new(&[], &options);
+    client.open(&uri, "plaintext", &program("-5."));
+    let hits = |found: &[Value]| {
+        found.iter().any(|one| one["message"].as_str().unwrap().contains("clamp hits cutter T1"))
+    };
+    let found = client.findings_if(&uri, 1, |found| hits(found));
+    let hit = found.iter().find(|one| one["code"] == "clearance").unwrap();
+    assert_eq!(hit["range"]["start"]["line"], 9, "{found:#?}");
+    client.edit(&uri, 2, [0, 0, 99, 0], &program("5."));
+    let found = client.findings_if(&uri, 2, |found| !hits(found));
+    assert!(!hits(&found));
+    client.edit(&uri, 3, [0, 0, 99, 0], &program("-6."));
+    client.tell("textDocument/didSave", json!({ "textDocument": { "uri": uri } }));
+    let found = client.findings_if(&uri, 3, |found| hits(found));
+    assert!(hits(&found));
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::inputs::Inputs;
 use super::job_line::JobLine;
 use super::travel::{self, TravelLeft};
 use crate::axes::{self, AxisColumn};
+use crate::clearance::ClearanceSummary;
 use crate::columns::{Column, ColumnKind};
 use crate::predict::Prediction;
 use crate::settings::StudySettings;
@@ -97,6 +98,18 @@ pub fn verified() -> Vec<Column<Verification>> {
     ]
 }
 
+/// Of a program that is proven to hit nothing.
+pub fn proven() -> Vec<Column<ClearanceSummary>> {
+    type C = Column<ClearanceSummary>;
+    let nearest = |found: &ClearanceSummary| found.nearest().map(|pair| pair.bodies.join(" / "));
+    vec![
+        C::new("clear_by_mm", "mm", 0, |found| found.clear_by_mm()),
+        C::new("nearest_approach_mm", "mm", 0, |found| found.nearest()?.nearest_mm),
+        C::new("nearest_approach_bodies", "", 0, nearest),
+        C::new("nearest_approach_line", "", 0, |found| found.nearest()?.nearest_line),
+    ]
+}
+
 /// Of a program that was predicted.
 pub fn predicted() -> Vec<Column<Prediction>> {
     type C = Column<Prediction>;
@@ -128,6 +141,9 @@ pub fn columns(jobs: &[JobLine], options: &StudySettings, inputs: &Inputs) -> Ve
     after.extend(of_axes(jobs, inputs));
     if options.verify {
         after.extend(heads(verified()));
+    }
+    if options.clearance {
+        after.extend(heads(proven()));
     }
     if options.predict {
         after.extend(heads(predicted()));

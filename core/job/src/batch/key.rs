@@ -6,13 +6,14 @@ use post_machine::diagnostic::Diagnostic;
 use super::JobStudy;
 use super::inputs::{ClText, MachineTexts};
 use super::job_line::JobLine;
+use crate::clearance;
 use crate::plugin_finder;
 
 /// Changes when outcomes of old mean something else.
 const FORMAT: &str = "post batch 1";
 
 /// The key of a job. What is in it: the bytes of the CL file and its name (programs have it in their comments), the texts of
-/// the machine and of all that it extends, its tools where a file has them, all settings and options, the version of `post` and the hash of its sources, names, versions and bytes of the
+/// the machine and of all that it extends, its tools where a file has them, its bodies where nothing shall hit them, all settings and options, the version of `post` and the hash of its sources, names, versions and bytes of the
 /// plugins.
 ///
 /// # Errors
@@ -42,6 +43,13 @@ pub fn key(
         add(format!("{:?}", file.tools).as_bytes());
     }
     add(study.options_text().as_bytes());
+    if study.options.clearance {
+        for file in clearance::files(machine) {
+            // One that cannot be read is told when the job is done.
+            let bytes = std::fs::read(file).unwrap_or_default();
+            add(blake3::hash(&bytes).as_bytes());
+        }
+    }
     for name in [&machine.control.dialect, &machine.accuracy.model] {
         let plugin = study.finder.find(name);
         let plugin = plugin.map_err(|fault| vec![plugin_finder::diagnostic(&fault, &[], None)])?;

@@ -1,6 +1,5 @@
 //! One job, from its line to its row.
 
-use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::num::NonZeroUsize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -19,6 +18,7 @@ use super::journal::Journal;
 use super::key;
 use super::outcome::{FAILED, JobOutcome, REFUSED, WRITTEN};
 use super::travel;
+use crate::cancellable_text::CancellableText;
 use crate::failure::Failure;
 use crate::files::{ClSource, HeldText};
 use crate::making::{ProgramInput, ProgramMaker, ProgramPart};
@@ -169,6 +169,9 @@ impl OneJob<'_> {
     fn make(&self) -> Result<JobOutcome, Failure> {
         let options = &self.study.options;
         let part = &self.part;
+        let wrong = |findings: &[Diagnostic]| {
+            findings.iter().any(|finding| finding.severity == Severity::Error)
+        };
         let making = MakingSettings {
             plan: options.plan,
             trust_model: options.trust_model,
@@ -181,7 +184,7 @@ impl OneJob<'_> {
         let mut source = self.source();
         let mut findings = unused_options::found(&part.machine, &maker.finder);
         maker.look_ahead_where_needed(&part.machine, &mut source)?;
-        let mut text = HashedText::new(options.verify || options.predict);
+        let mut text = HashedText::new(options.verify || options.clearance || options.predict);
         // Results are compared: a plan that is asked for is made, whatever it gains.
         let ready = maker.prepare(part, &mut source, true)?;
         let beside = PostingExtras::default();
@@ -193,12 +196,18 @@ impl OneJob<'_> {
             let program = ProgramInput { name: name.clone(), text: Box::new(self.reread(&text)) };
             let held = maker.read_back(part, made.moved, &mut source, program)?;
             outcome.tell(&columns::verified(), &held.found);
-            let wrong = held.is_wrong();
             findings.extend(held.findings);
-            if wrong {
-                let mut refused = JobOutcome::not_written(REFUSED, &findings);
-                refused.values.append(&mut outcome.values);
-                return Ok(refused);
+            if wrong(&findings) {
+                return Ok(outcome.refused(&findings));
+            }
+        }
+        if options.clearance {
+            let program = ProgramInput { name: name.clone(), text: Box::new(self.reread(&text)) };
+            let proven = maker.prove(part, made.moved, &mut source, program, None)?;
+            outcome.tell(&columns::proven(), &proven.summary());
+            findings.extend(proven.findings);
+            if wrong(&findings) {
+                return Ok(outcome.refused(&findings));
             }
         }
         if options.predict {
@@ -220,10 +229,9 @@ impl OneJob<'_> {
     }
 
     fn reread<'t>(&self, text: &'t HashedText) -> CancellableText<'t> {
-        CancellableText {
-            text: Cursor::new(text.kept.as_deref().unwrap_or_default()),
-            stop: Arc::clone(self.stop),
-        }
+        let stop = Arc::clone(self.stop);
+        let text = text.kept.as_deref().unwrap_or_default();
+        CancellableText::new(text, move || stop.load(Ordering::Relaxed))
     }
 
     /// What the program came to.
@@ -260,26 +268,5 @@ impl TextSink for HashedText {
             kept.extend_from_slice(text);
         }
         Ok(())
-    }
-}
-
-/// A program that is read back until that is given up.
-struct CancellableText<'t> {
-    text: Cursor<&'t [u8]>,
-    stop: Arc<AtomicBool>,
-}
-
-impl Read for CancellableText<'_> {
-    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        if self.stop.load(Ordering::Relaxed) {
-            return Err(io::Error::other("given up"));
-        }
-        self.text.read(into)
-    }
-}
-
-impl Seek for CancellableText<'_> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.text.seek(to)
     }
 }

@@ -75,6 +75,13 @@ impl JobOutcome {
         outcome
     }
 
+    /// Refused for these reasons, with what was found of it.
+    pub fn refused(mut self, findings: &[Diagnostic]) -> Self {
+        let mut refused = Self::not_written(REFUSED, findings);
+        refused.values.append(&mut self.values);
+        refused
+    }
+
     /// Failed where nobody could say why.
     pub fn lost(code: &str, message: &str) -> Self {
         let mut outcome = Self::default();

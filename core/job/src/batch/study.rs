@@ -111,8 +111,13 @@ impl JobStudy {
     pub fn options_text(&self) -> String {
         let options = &self.options;
         format!(
-            "{:?} {} {} {} {}",
-            options.reading, options.plan, options.verify, options.predict, options.trust_model
+            "{:?} {} {} {} {}{}",
+            options.reading,
+            options.plan,
+            options.verify,
+            options.predict,
+            options.trust_model,
+            if options.clearance { " clearance" } else { "" }
         )
     }
 }

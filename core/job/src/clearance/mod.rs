@@ -1,26 +1,32 @@
 //! Whether anything hits anything while an NC program runs.
 
 mod bodies;
+mod names;
+mod of_job;
+mod summary;
+pub mod text;
 mod watch;
 
-use std::io::BufReader;
+use std::path::{Path, PathBuf};
 
-use post_clearance::proof::{BodyKind, Proof, Rules};
-use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
+use post_clearance::proof::{Body, BodyKind, Proof, Rules};
+use post_machine::description::{GivenShape, Machine};
+use post_machine::diagnostic::{Diagnostic, Severity};
 use post_machine::kinematics::{Joint, Joints};
-use post_readback::course::cl::{ClCourse, ClSettings};
-use post_readback::verify::CutBounds;
+use post_readback::course::cl::{ClSettings, ClTool};
 use post_readback::{MOST_FAULTS, ProgramRun};
 
+use crate::cl_facts::ClFacts;
 use crate::failure::Failure;
 use crate::files::PathArg;
-use crate::nc_program::{self, NcControl, ProgramFile, open_as};
+use crate::nc_program::{self, NcControl, ProgramFile, ProgramText, open_as};
 use crate::session::Session;
 use bodies::link_name;
 use watch::ClearanceWatch;
 
-pub use watch::PairRow;
+pub use of_job::of_job;
+pub use summary::{ClearanceSummary, PairSummary};
+pub use watch::{Hearer, PairRow};
 
 /// A program that is to be proven.
 #[derive(Clone, Debug)]
@@ -46,6 +52,13 @@ pub struct ClearanceFound {
     pub findings: Vec<Diagnostic>,
 }
 
+impl ClearanceFound {
+    /// Something is not clear, or that it is is not proven.
+    pub fn is_wrong(&self) -> bool {
+        self.findings.iter().any(|finding| finding.severity == Severity::Error)
+    }
+}
+
 /// Proves a program.
 ///
 /// # Errors
@@ -55,22 +68,41 @@ pub fn clearance(
     control: &NcControl,
     request: &ClearanceRequest,
 ) -> Result<ClearanceFound, Failure> {
-    let machine = &control.machine;
-    let mut findings = unknown_names(machine);
-    let bodies = bodies::of_machine(machine, &mut findings);
-    let diameters = match &request.cl {
-        Some(cl) => diameters(session, machine, cl)?,
+    let tools = match &request.cl {
+        Some(cl) => {
+            let (name, file) = open_as(session, "the CL file", cl)?;
+            ClFacts::read(ClSettings::of(&control.machine, &name), file)?.tools
+        }
         None => Vec::new(),
     };
     let program = ProgramFile::open(session, &request.input)?;
-    let mut run = ProgramRun::new(control.program_with_rapids(&program)?);
-    let mut watch = ClearanceWatch::new(control, bodies, diameters);
+    prove(control, &program.name, Box::new(program.text()?), &tools, None)
+}
+
+/// Proves the program `name` in `text`, which `control` runs; `tools` are those of its CL file. Who
+/// `hear`s is told of each motion how near any two bodies come on it.
+///
+/// # Errors
+/// The program cannot be read, or the machine not be solved.
+pub fn prove(
+    control: &NcControl,
+    name: &str,
+    text: ProgramText<'_>,
+    tools: &[ClTool],
+    hear: Option<&mut Hearer<'_>>,
+) -> Result<ClearanceFound, Failure> {
+    let machine = &control.machine;
+    let mut findings = names::unknown(machine);
+    let bodies = bodies::of_machine(machine, &mut findings);
+    let diameters = tools.iter().filter_map(|tool| Some((tool.number, tool.diameter?))).collect();
+    let mut run = ProgramRun::new(control.program_with_rapids(name, text)?);
+    let mut watch = ClearanceWatch::new(control, bodies, diameters, hear);
     while let Some(done) = run.block() {
         for what in done.iter() {
             watch.take(what);
         }
     }
-    let mut found = watch.finish(&program.name);
+    let mut found = watch.finish(name);
     findings.extend(run.faults().iter().cloned());
     if run.faults().len() == MOST_FAULTS {
         findings.push(nc_program::given_up());
@@ -81,21 +113,14 @@ pub fn clearance(
     Ok(found)
 }
 
-/// Diameters of the cutters of a CL file by tool, mm.
-fn diameters(
-    session: &Session,
-    machine: &Machine,
-    cl: &PathArg,
-) -> Result<Vec<(u32, f64)>, Failure> {
-    let (name, file) = open_as(session, "the CL file", cl)?;
-    let settings = ClSettings::of(machine, &name);
-    let mut course = ClCourse::new(settings, BufReader::new(file));
-    let (_, findings) = CutBounds::of(&mut course, machine.control_point.along);
-    if !findings.is_empty() {
-        return Err(findings.into());
-    }
-    let tools = course.tools().iter();
-    Ok(tools.filter_map(|tool| Some((tool.number, tool.diameter?))).collect())
+/// The STL files of a machine's bodies, whether they are there or not.
+pub fn files(machine: &Machine) -> impl Iterator<Item = &Path> {
+    let given =
+        machine.stock.iter().chain(&machine.fixtures).filter_map(|body| match &body.shape {
+            GivenShape::File(file) => Some(file),
+            _ => None,
+        });
+    given.chain(machine.solids.iter().map(|solid| &solid.file)).map(PathBuf::as_path)
 }
 
 /// Links of the machine that no body hangs on.
@@ -112,25 +137,8 @@ fn without_body(machine: &Machine) -> Vec<String> {
     lacks
 }
 
-/// Names of `[clearance] ignore` that nothing has.
-fn unknown_names(machine: &Machine) -> Vec<Diagnostic> {
-    let known = |name: &String| {
-        ["w", "b", "t", "stock", "holder", "cutter"].contains(&name.as_str())
-            || machine.axes.iter().any(|axis| axis.name == *name)
-            || machine.fixtures.iter().any(|body| body.name == *name)
-    };
-    let names = machine.clearance.ignore.iter().flatten().filter(|name| !known(name));
-    names
-        .map(|name| {
-            let message = format!("[clearance] ignore names {name}, and nothing is called so");
-            let help = "an axis letter, b, w, t, stock, holder, cutter, or the name of a fixture";
-            Diagnostic::error("clearance-body", message).help(help)
-        })
-        .collect()
-}
-
 /// A machine file says something of bodies besides pictures.
-fn is_described(machine: &Machine) -> bool {
+pub fn is_described(machine: &Machine) -> bool {
     machine.stock.is_some()
         || !machine.fixtures.is_empty()
         || !machine.outlines.is_empty()
@@ -143,7 +151,7 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
     if !is_described(machine) {
         return Vec::new();
     }
-    let mut findings = unknown_names(machine);
+    let mut findings = names::unknown(machine);
     let all = bodies::of_machine(machine, &mut findings);
     let lacks = without_body(machine);
     if !lacks.is_empty() {
@@ -171,29 +179,21 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
 }
 
 /// The proof for the bodies of a machine.
-fn proof(machine: &Machine, bodies: Vec<post_clearance::proof::Body>) -> Proof {
+fn proof(machine: &Machine, bodies: Vec<Body>) -> Proof {
     let axes: Vec<Joint> = machine.axes.iter().map(|axis| axis.joint).collect();
     let rules = &machine.clearance;
-    let called = |body: &post_clearance::proof::Body, name: &String| {
-        let kind = match body.kind {
-            BodyKind::Holder => "holder",
-            BodyKind::Cutter => "cutter",
-            BodyKind::Stock => "stock",
-            BodyKind::Machine | BodyKind::Fixture => "",
-        };
-        let ends = (name == "w" && body.link == 0) || (name == "t" && body.link == axes.len());
-        body.name == *name || kind == name || ends || link_name(machine, body.link) == *name
-    };
-    let counts = |one: &post_clearance::proof::Body, other: &post_clearance::proof::Body| {
+    let counts = |one: &Body, other: &Body| {
         let both = one.kind == BodyKind::Machine && other.kind == BodyKind::Machine;
         let beside = one.link.abs_diff(other.link) == 1;
-        let ignored = rules.ignore.iter().any(|[first, last]| {
-            (called(one, first) && called(other, last))
-                || (called(one, last) && called(other, first))
-        });
         // Of neighbours in the chain one slides or turns on the other.
-        !(ignored || both && beside)
+        let mut ignored = rules.ignore.iter();
+        !(both && beside || ignored.any(|pair| names::mean(machine, pair, [one, other])))
+    };
+    let of = |one: &Body, other: &Body| {
+        let pairs = rules.pairs.iter();
+        let pair = pairs.rev().find(|pair| names::mean(machine, &pair.between, [one, other]))?;
+        Some(Rules { keep: pair.keep, rapid: pair.rapid, ..Rules::default() })
     };
     let kept = Rules { keep: rules.keep, rapid: rules.rapid, ..Rules::default() };
-    Proof::new(&axes, bodies, kept, counts)
+    Proof::new(&axes, bodies, kept, counts).with_rules(of)
 }

@@ -30,8 +30,11 @@ pub struct PairRow {
     pub fault: Option<Fault>,
 }
 
+/// Hears of motions: the line, and how near any two bodies come on it, mm.
+pub type Hearer<'h> = dyn FnMut(u64, f64) + 'h;
+
 /// The proof along a program.
-pub(super) struct ClearanceWatch<'a> {
+pub(super) struct ClearanceWatch<'a, 'h> {
     control: &'a NcControl,
     fixed: Vec<Body>,
     diameters: Vec<(u32, f64)>,
@@ -45,13 +48,20 @@ pub(super) struct ClearanceWatch<'a> {
     /// It was said that the spindle turns the part.
     turns_part: bool,
     rows: BTreeMap<[String; 2], PairRow>,
+    /// Who hears how near the nearest two bodies come on each line, mm, and how that is found.
+    told: Option<(&'a mut Hearer<'h>, Proof)>,
     found: ClearanceFound,
     /// What is wrong by line.
     faults: Vec<(u64, String, &'static str)>,
 }
 
-impl<'a> ClearanceWatch<'a> {
-    pub fn new(control: &'a NcControl, fixed: Vec<Body>, diameters: Vec<(u32, f64)>) -> Self {
+impl<'a, 'h> ClearanceWatch<'a, 'h> {
+    pub fn new(
+        control: &'a NcControl,
+        fixed: Vec<Body>,
+        diameters: Vec<(u32, f64)>,
+        hear: Option<&'a mut Hearer<'h>>,
+    ) -> Self {
         let found = ClearanceFound {
             pairs: Vec::new(),
             lacks: Vec::new(),
@@ -59,8 +69,10 @@ impl<'a> ClearanceWatch<'a> {
             distances: 0,
             findings: Vec::new(),
         };
+        let proof = proof(&control.machine, fixed.clone());
         Self {
-            proof: proof(&control.machine, fixed.clone()),
+            told: hear.map(|hear| (hear, proof.clone())),
+            proof,
             control,
             fixed,
             diameters,
@@ -120,6 +132,11 @@ impl<'a> ClearanceWatch<'a> {
             !(touches && cuts)
         };
         self.proof.take(&Move { way, rapid, line: motion.line }, looks);
+        if let Some((hear, proof)) = &mut self.told
+            && let Some(distance) = proof.closest(&Move { way, rapid, line: motion.line }, looks)
+        {
+            hear(motion.line, distance);
+        }
         if way.independent && motion.turns() && motion.way != Interpolation::Axes {
             // Where the control keeps the tip it may do so at rapid as well: the axes go another way then.
             let way = Way { independent: false, ..way };
@@ -155,7 +172,7 @@ impl<'a> ClearanceWatch<'a> {
                 format!("how long tool {number} is is not known: nothing is proven of it");
             let help = "[tools] of the machine file, --offsets or --tool-length";
             self.faults.push((motion.line, message, help));
-            self.proof = proof(machine, bodies);
+            self.begin(bodies);
             return;
         };
         let outline = machine.outlines.iter().find(|outline| outline.number == number);
@@ -170,7 +187,15 @@ impl<'a> ClearanceWatch<'a> {
         let profile = outline.map_or(&[][..], |outline| &outline.cutter);
         self.widens =
             profile.windows(2).all(|pair| pair[0][0] <= pair[1][0] && pair[0][1] <= pair[1][1]);
-        self.proof = proof(machine, bodies);
+        self.begin(bodies);
+    }
+
+    /// The proof begins again with these bodies.
+    fn begin(&mut self, bodies: Vec<Body>) {
+        self.proof = proof(&self.control.machine, bodies);
+        if let Some((_, told)) = &mut self.told {
+            *told = self.proof.clone();
+        }
     }
 
     fn length_of(&self, number: u32) -> Option<f64> {

@@ -84,7 +84,8 @@ pub fn compare(session: &Session, request: &DiffRequest) -> Result<DiffResult, F
     let mut along = PathComparison::new(rules.tip);
     let opened = |new: bool| {
         let side = &sides[usize::from(new)];
-        side.control.program_with_rapids(&side.program)
+        let program = &side.program;
+        side.control.program_with_rapids(&program.name, Box::new(program.text()?))
     };
     let (found, unread) = diff::compare(&rules, opened, &mut |sample| along.take(sample))?;
     let UnreadBlocks { old: mut refused, new: more } = unread;

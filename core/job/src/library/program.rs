@@ -16,7 +16,9 @@ use crate::nc_program::Reread;
 use crate::operations;
 use crate::plugin_finder;
 use crate::session::Session;
-use crate::settings::{JobSettings, MakingSettings, ReadingSettings, ThreadSettings, tell};
+use crate::settings::{
+    JobSettings, MakingSettings, OutputSettings, ReadingSettings, ThreadSettings, tell,
+};
 
 /// A program that is asked for.
 #[derive(Clone, Debug)]
@@ -30,6 +32,8 @@ struct Request {
     writes: bool,
     /// It is read back before it is written.
     verify: bool,
+    /// It is proven to hit nothing before it is written.
+    clearance: bool,
 }
 
 /// A file, and never a standard stream: those are not ours.
@@ -89,6 +93,8 @@ pub struct ProgramFindings {
 pub struct ReportOptions {
     /// What reading the program back finds.
     pub verify: bool,
+    /// How near its bodies come to one another.
+    pub clearance: bool,
     /// What is predicted of it.
     pub predict: bool,
     /// Largest size, MB.
@@ -114,8 +120,15 @@ impl Request {
             over,
             mark: None,
         };
-        let (writes, verify) = (output.is_some(), false);
-        Ok(Self { job, making, threads, output: output.map(file), writes, verify })
+        Ok(Self {
+            job,
+            making,
+            threads,
+            writes: output.is_some(),
+            output: output.map(file),
+            verify: false,
+            clearance: false,
+        })
     }
 
     /// A program of a job file, with `options` over what that says; it is written if `writes` says so.
@@ -133,9 +146,10 @@ impl Request {
         let job = program.settings(&keys, mark);
         let output = match writes {
             true => Some(program.target(session)?),
-            false => keys.outputs.output,
+            false => keys.outputs.output.clone(),
         };
-        Ok(Self { job, making: keys.making, threads, output, writes, verify: keys.outputs.verify })
+        let OutputSettings { verify, clearance, .. } = keys.outputs;
+        Ok(Self { job, making: keys.making, threads, output, writes, verify, clearance })
     }
 
     /// Opens what the program is made with: the program as a part of its file, and the file.
@@ -221,8 +235,8 @@ impl MadeProgram {
             let mut files = AtomicFile::create(session, &targets)?;
             let mut columns = keep_blocks.then(|| BlockArrays::new(&part.machine));
             let observer = columns.as_mut().map(|columns| columns as &mut dyn Observer);
-            let verify = request.verify;
-            let wanted = ProgramRequest { verify, observer, ..ProgramRequest::default() };
+            let Request { verify, clearance, .. } = request;
+            let wanted = ProgramRequest { verify, clearance, observer, ..Default::default() };
             let mut text = text(&part);
             let mut findings = Vec::new();
             let ready = maker.prepare(&part, &mut source, false)?;
@@ -294,6 +308,28 @@ impl MadeProgram {
         Ok(ProgramFindings { json, findings })
     }
 
+    /// Proves that nothing hits anything while it runs, as `post clearance` does with the CL file: what a summary tells of
+    /// it.
+    ///
+    /// # Errors
+    /// What is not clear.
+    pub fn clearance(&self, stop: &StopSignal) -> Result<ProgramFindings, Refusal> {
+        let proven = quietly(stop, |session| {
+            let maker = self.request.maker(session)?;
+            let mut source = ClSource::of_job(session, &self.request.job, true)?;
+            let program =
+                ProgramInput { name: self.name(), text: Box::new(Cursor::new(&self.text)) };
+            let proven = maker.prove(&self.part, self.moved, &mut source, program, None)?;
+            match proven.is_wrong() {
+                true => Err(proven.findings.into()),
+                false => Ok((files::json(&proven.summary()), proven.findings)),
+            }
+        });
+        let ((json, found), mut findings) = proven?;
+        findings.extend(found);
+        Ok(ProgramFindings { json, findings })
+    }
+
     /// Predicts what it does on its machine, as `post predict` with the CL file does; `period` between set-points, s, over
     /// the machine file's.
     ///
@@ -331,9 +367,10 @@ impl MadeProgram {
             let (maker, part, mut source) = self.request.open(session)?;
             let mut files = AtomicFile::create(session, &[(Role::REPORT, &file(page))])?;
             let most = told.most_megabytes.saturating_mul(1_000_000);
-            let ReportOptions { verify, predict, .. } = told;
+            let ReportOptions { verify, clearance, predict, .. } = told;
             let page = files.first_mut().map(|file| (file, most));
-            let wanted = ProgramRequest { verify, predict, page, ..ProgramRequest::default() };
+            let wanted =
+                ProgramRequest { verify, clearance, predict, page, ..ProgramRequest::default() };
             let ready = maker.prepare(&part, &mut source, false)?;
             let (mut text, mut findings) = (text(&part), Vec::new());
             maker.make(&part, ready, &mut source, &mut text, wanted, &mut findings)?;

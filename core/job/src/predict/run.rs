@@ -20,6 +20,7 @@ use super::set_point_stream::SetPointStream;
 use super::stages::Stages;
 use super::trajectory::Trajectory;
 use crate::beside::Work;
+use crate::cl_facts::ClFacts;
 use crate::failure::Failure;
 use crate::files::{ClSource, FileFault, Watched};
 use crate::nc_program::{self, NcControl, ProgramText};
@@ -118,7 +119,7 @@ pub fn predict(
     let path = match against {
         PredictReference::Nothing => None,
         PredictReference::Cl(source) => {
-            tools = cl_path::tools(asked, source)?;
+            tools = ClFacts::of_job(asked.arguments, asked.machine, source)?.tools;
             Some(cl_path::open(asked, source, &mut faults)?)
         }
     };

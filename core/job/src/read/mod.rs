@@ -86,7 +86,7 @@ pub fn read<'m>(
         table.finish()?;
     }
     if let (Some(file), true) = (cl_files.first_mut(), refused.is_empty()) {
-        let program = control.program_with_rapids(&program)?;
+        let program = control.program_with_rapids(&program.name, Box::new(program.text()?))?;
         write_cl(session, input, control, program, file, &mut refused)?;
     }
     if !refused.is_empty() {

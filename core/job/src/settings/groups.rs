@@ -195,6 +195,11 @@ settings! {
     /// compares it with the CL file. A program that deviates is not written.
     flag verify;
 
+    /// Proves that nothing hits anything while each program runs, before it is written (`post clearance`): reads it back, and
+    /// holds the bodies of the machine file against one another along all motions. A program that is not clear is not
+    /// written.
+    flag clearance;
+
     /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axis motion and contour
     /// error; with =FILE as JSON too (several programs give a list).
     one predict: Option<PathArg> = FILE_IF_ANY, "FILE";
@@ -342,6 +347,10 @@ settings! {
 
     /// Verifies each program against its CL file, as `post --verify`: a program that deviates is a refused job.
     flag verify;
+
+    /// Proves that nothing hits anything while each program runs, as `post --clearance`: a program that is not clear is a
+    /// refused job.
+    flag clearance;
 
     /// Predicts what each program does, as `post --predict`: true cycle time and contour error.
     flag predict;

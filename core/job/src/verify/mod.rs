@@ -5,13 +5,15 @@ mod page;
 use post_machine::description::Machine;
 use post_readback::BlockEffect;
 use post_readback::interpret::Limits;
-use post_readback::verify::BlockReport;
+use post_readback::verify::{BlockReport, Verification};
+use serde::Serialize;
 
 use super::JobMachine;
 use super::nc_program::{self, ProgramFile};
 use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyWatch};
 use super::report::{ClWindow, ExtraColumns, MotionRows};
 use super::result_files::ResultFiles;
+use crate::clearance::{self, ClearanceFound, ClearanceSummary};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job_file::is_marked;
@@ -43,6 +45,8 @@ pub struct VerifyRequest {
     pub any_coolant: bool,
     /// Which work offset it cuts in, where the CL file names none, is the program's own business.
     pub any_work_offset: bool,
+    /// It is proven besides that nothing hits anything.
+    pub clearance: bool,
     /// Where the table of its lines goes.
     pub map: Option<PathArg>,
     /// Where what was found goes, as JSON.
@@ -59,12 +63,23 @@ pub struct Verified {
     pub name: String,
     /// The machine with its settings.
     pub machine: Machine,
-    /// What was found, and what is wrong.
+    /// What was found, and what is wrong: what is not clear too, where that was asked for.
     pub held: VerifiedProgram,
+    /// What was proven: nothing hits anything.
+    pub clearance: Option<ClearanceFound>,
     /// Largest deviations that are other than the machine file's: mm, radians.
     pub tolerances: [Option<f64>; 2],
     /// A text went to standard output.
     pub printed: bool,
+}
+
+/// What is told as JSON.
+#[derive(Serialize)]
+struct VerifySummary<'a> {
+    #[serde(flatten)]
+    found: &'a Verification,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    clearance: Option<ClearanceSummary>,
 }
 
 /// Holds a program against a CL file; what is wanted beside is written whether it is right or wrong.
@@ -111,14 +126,27 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     let map = texts.table.as_mut().map(|file| (JsonRows::default(), file));
     let mut watch = VerifyOutputs { map, rows };
     let name = &program.name;
-    let held =
+    let mut held =
         read_back::verify(&reading, &mut source, name, Box::new(program.text()?), &mut watch)?;
     let VerifyOutputs { map, rows } = watch;
     if let Some((map, file)) = map {
         map.end(file)?;
     }
+    let clearance = match request.clearance {
+        // It is run once more: rapids at feed are told from cuts, and what is refused of it was said.
+        true => {
+            let text = Box::new(program.text()?);
+            let mut proven = clearance::of_job(&reading, &mut source, name, text, None)?;
+            proven.findings.retain(|finding| !held.findings.contains(finding));
+            held.findings.append(&mut proven.findings);
+            Some(proven)
+        }
+        false => None,
+    };
     if let Some(file) = &mut texts.summary {
-        file.write_bytes(files::json(&held.found).as_bytes())?;
+        let clearance = clearance.as_ref().map(ClearanceFound::summary);
+        let told = VerifySummary { found: &held.found, clearance };
+        file.write_bytes(files::json(&told).as_bytes())?;
     }
     let tolerances = reading.tolerances;
     if let (Some(page), Some(rows)) = (&mut texts.page, rows) {
@@ -131,7 +159,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     let texts = texts.all();
     let printed = texts.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, texts)?;
-    Ok(Verified { name: program.name, machine, held, tolerances, printed })
+    Ok(Verified { name: program.name, machine, held, clearance, tolerances, printed })
 }
 
 /// What is made of the lines of the program while it is held against the CL file.

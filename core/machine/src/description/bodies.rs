@@ -22,6 +22,9 @@ const KEPT: Bounds = Bounds {
     ..Bounds::from_zero("machine-body")
 };
 
+/// Names of bodies by what they are; those of a tool stand ahead of its number too: `holder T3`.
+const KINDS: [&str; 3] = ["stock", "holder", "cutter"];
+
 const RADIUS: Bounds = Bounds { says: " mm", ..Bounds::above_zero("machine-body") };
 
 words! {
@@ -60,10 +63,25 @@ keys! {
         /// Distance that they keep at rapid, mm; that at feed if not said.
         rapid: Option<KeyedNumber> = KEPT,
         /// Pairs that are not looked at, such as `[["C", "A"]]`: an axis letter, `b`, `w` and `t` mean all bodies that hang
-        /// there, `stock`, `holder`, `cutter` and the name of a fixture these.
+        /// there, `stock`, `holder`, `cutter` and the name of a fixture these, `holder T3` that of one tool.
         ignore: Vec<[Spanned<String>; 2]>,
+        /// Pairs that keep another distance, such as `[{ between = ["holder", "stock"], keep = 5, rapid = 10 }]`; of several
+        /// that name the same two bodies the last holds.
+        pairs: Vec<ClearancePairFile>,
         /// How the axes of a rapid go where the control does not keep the tip.
         rapid_axes: RapidAxes,
+    }
+}
+
+keys! {
+    /// Two bodies that keep another distance than all others.
+    ClearancePairFile {
+        /// Their names, as in `ignore`.
+        between: [Spanned<String>; 2],
+        /// Distance that they keep at feed, mm; that of `[clearance]` if not said.
+        keep: Option<KeyedNumber> = KEPT,
+        /// Distance that they keep at rapid, mm; that at feed if not said.
+        rapid: Option<KeyedNumber> = KEPT,
     }
 }
 
@@ -136,6 +154,26 @@ pub struct ToolOutline {
     pub cutter: Vec<[f64; 2]>,
 }
 
+/// Two bodies, or all bodies of two kinds, by the names that a machine file calls them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyPair {
+    /// Their names.
+    pub names: [String; 2],
+    /// Where the machine file has them.
+    pub place: Option<SourcePlace>,
+}
+
+/// Two bodies that keep another distance than all others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KeptPair {
+    /// The bodies.
+    pub between: BodyPair,
+    /// Distance at feed, mm.
+    pub keep: f64,
+    /// Distance at rapid, mm.
+    pub rapid: f64,
+}
+
 /// What is kept between bodies.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClearanceRules {
@@ -144,9 +182,18 @@ pub struct ClearanceRules {
     /// Distance at rapid, mm.
     pub rapid: f64,
     /// Pairs that are not looked at.
-    pub ignore: Vec<[String; 2]>,
+    pub ignore: Vec<BodyPair>,
+    /// Pairs that keep other distances; the last that names two bodies holds.
+    pub pairs: Vec<KeptPair>,
     /// How the axes of a rapid go.
     pub rapid_axes: RapidAxes,
+}
+
+impl ClearanceRules {
+    /// All pairs that are named.
+    pub fn named(&self) -> impl Iterator<Item = &BodyPair> {
+        self.ignore.iter().chain(self.pairs.iter().map(|pair| &pair.between))
+    }
 }
 
 impl Builder<'_> {
@@ -157,6 +204,13 @@ impl Builder<'_> {
         axes: &[Axis],
     ) -> Vec<GivenBody> {
         let bodies = file.iter().filter_map(|(name, body)| {
+            let called = name.get_ref().as_str();
+            if KINDS.contains(&called) || link_of(called, axes).is_some() {
+                let message = format!("a fixture cannot be called {called}: that is another body");
+                let help = "a name of your own; stock, holder, cutter, b, w, t and axis letters are taken, the stock is [stock]";
+                self.fault("machine-body", name.span(), message, help);
+                return None;
+            }
             let on = body.get_ref().on.as_ref();
             let link = match on {
                 Some(on) => link_of(on.get_ref(), axes),
@@ -217,15 +271,28 @@ impl Builder<'_> {
     /// What is to be kept.
     pub(super) fn clearance(&mut self, file: &ClearanceFile) -> ClearanceRules {
         let keep = self.checked(&file.keep).unwrap_or(0.0);
+        let mut pairs = Vec::with_capacity(file.pairs.len());
+        for pair in &file.pairs {
+            let kept = self.checked(&pair.keep).unwrap_or(keep);
+            pairs.push(KeptPair {
+                between: self.body_pair(&pair.between),
+                keep: kept,
+                rapid: self.checked(&pair.rapid).unwrap_or(kept),
+            });
+        }
         ClearanceRules {
             keep,
             rapid: self.checked(&file.rapid).unwrap_or(keep),
-            ignore: file
-                .ignore
-                .iter()
-                .map(|pair| pair.each_ref().map(|name| name.get_ref().clone()))
-                .collect(),
+            ignore: file.ignore.iter().map(|pair| self.body_pair(pair)).collect(),
+            pairs,
             rapid_axes: file.rapid_axes,
+        }
+    }
+
+    fn body_pair(&self, [one, other]: &[Spanned<String>; 2]) -> BodyPair {
+        BodyPair {
+            names: [one, other].map(|name| name.get_ref().clone()),
+            place: self.sources.place(one.span().start..other.span().end),
         }
     }
 

@@ -41,7 +41,9 @@ use nalgebra::Vector3;
 
 pub use accuracy::{AccuracyRules, ControlPoint, SHARE_AT_POLES};
 pub use arcs::Arcs;
-pub use bodies::{ClearanceRules, GivenBody, GivenShape, RapidAxes, ToolOutline};
+pub use bodies::{
+    BodyPair, ClearanceRules, GivenBody, GivenShape, KeptPair, RapidAxes, ToolOutline,
+};
 pub use build::{Evaluated, MachineReading, examine, load};
 pub use choice::{Retract, Rewind, SolutionCriterion, SolutionRules};
 pub use cl_words::WordRule;

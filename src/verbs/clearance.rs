@@ -1,7 +1,5 @@
 //! `post clearance`: whether anything hits anything while an NC program runs.
 
-mod clearance_text;
-
 use clap::Args;
 
 use post_cli::arguments::ProgramArguments;
@@ -47,7 +45,7 @@ pub fn run(session: &Session, arguments: &ClearanceArguments) -> Result<(), Fail
     let ClearanceArguments { input, cl, .. } = arguments;
     let request = ClearanceRequest { input: input.clone(), cl: cl.clone() };
     let found = clearance::clearance(session, &control, &request)?;
-    terminal::print_beside(session, &clearance_text::text(&found), false);
+    terminal::print_beside(session, &clearance::text::text(&found), false);
     let (errors, warnings): (Vec<_>, Vec<_>) =
         found.findings.into_iter().partition(|finding| finding.severity == Severity::Error);
     session.findings(&warnings);

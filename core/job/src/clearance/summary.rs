@@ -1,0 +1,88 @@
+//! What was proven, for summaries.
+
+use serde::Serialize;
+
+use super::ClearanceFound;
+use crate::text::{at_least, number};
+
+/// What was proven of a program, as its summary tells it.
+#[derive(Clone, Debug, Serialize)]
+pub struct ClearanceSummary {
+    /// Motions that were looked at.
+    pub motions: u64,
+    /// What is known of each pair of bodies.
+    pub pairs: Vec<PairSummary>,
+    /// What has no body, and was not looked at.
+    pub without_body: Vec<String>,
+}
+
+/// What is known of two bodies along a program.
+#[derive(Clone, Debug, Serialize)]
+pub struct PairSummary {
+    /// Their names.
+    pub bodies: [String; 2],
+    /// They are never nearer on motions that are proven to be clear, mm; none where there is no such motion.
+    pub clear_by_mm: Option<f64>,
+    /// The nearest that was found at a pose, mm.
+    pub nearest_mm: Option<f64>,
+    /// Where that is, a line of the program.
+    pub nearest_line: Option<u64>,
+    /// Motions on which they are not clear.
+    pub not_clear: u64,
+}
+
+impl ClearanceFound {
+    /// What a summary tells of it.
+    pub fn summary(&self) -> ClearanceSummary {
+        let known = |value: f64| value.is_finite().then_some(value);
+        let pairs = self.pairs.iter().map(|pair| PairSummary {
+            bodies: pair.names.clone(),
+            clear_by_mm: known(pair.clear_by),
+            nearest_mm: known(pair.nearest.0),
+            nearest_line: (pair.nearest.1 > 0).then_some(pair.nearest.1),
+            not_clear: pair.faults,
+        });
+        ClearanceSummary {
+            motions: self.motions,
+            pairs: pairs.collect(),
+            without_body: self.lacks.clone(),
+        }
+    }
+}
+
+impl ClearanceSummary {
+    /// The pair that comes nearest.
+    pub fn nearest(&self) -> Option<&PairSummary> {
+        let distance = |pair: &PairSummary| pair.nearest_mm.unwrap_or(f64::INFINITY);
+        self.pairs.iter().min_by(|one, other| distance(one).total_cmp(&distance(other)))
+    }
+
+    /// The least distance that all pairs are proven to keep, mm; none where none is.
+    pub fn clear_by_mm(&self) -> Option<f64> {
+        self.pairs.iter().filter_map(|pair| pair.clear_by_mm).min_by(f64::total_cmp)
+    }
+
+    /// All of it in a sentence.
+    pub fn fact(&self) -> String {
+        let mut fact = match self.pairs.len() {
+            1 => "1 pair of bodies".to_owned(),
+            count => format!("{count} pairs of bodies"),
+        };
+        if let Some(by) = self.clear_by_mm() {
+            fact.push_str(&format!(" proven to stay apart by {} mm", at_least(by, 3)));
+        }
+        if let Some(PairSummary {
+            bodies: [one, other],
+            nearest_mm: Some(nearest),
+            nearest_line: Some(line),
+            ..
+        }) = self.nearest()
+        {
+            fact.push_str(&format!(
+                "; nearest are {one} and {other}, {} mm in line {line} of the program",
+                number(*nearest, 3)
+            ));
+        }
+        fact
+    }
+}

@@ -198,7 +198,7 @@ impl<'a> Conversion<'a> {
         if let (Some(page), Some(rows)) = (&mut page, rows) {
             let (named, mut text) = (program.name().to_owned(), program.reread()?);
             let texts = PageTexts { source, name: &named, text: &mut text };
-            self.page(&made).write(rows, None, texts, request.report.most(), page)?;
+            self.page(&made).write(rows, None, None, texts, request.report.most(), page)?;
         }
         Ok((made, page))
     }
@@ -256,6 +256,7 @@ impl<'a> Conversion<'a> {
             program: output,
             report: &made.report,
             verification: Some(&made.held.found),
+            clearance: None,
             prediction: None,
             findings: &made.findings,
             job: "convert",

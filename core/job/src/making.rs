@@ -27,7 +27,9 @@ use crate::plugin_finder;
 use crate::posting_pass::PostingExtras;
 use crate::predict::{self, PredictReference, Predicted, Prediction, PredictionSetup, Sample};
 use crate::read_back::{self, ReadingSetup, Unwatched, VerifiedProgram};
-use crate::report::{self, BlockRows, ClWindow, PageTexts, PostPage, PredictedParts};
+use crate::report::{
+    self, BlockRows, ClWindow, ClearanceRows, PageTexts, PostPage, PredictedParts,
+};
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings, ThreadSettings};
 use crate::summary::{self, SummaryJson};
@@ -297,9 +299,15 @@ impl<'a> ProgramMaker<'a> {
             }
             outcome.verification = Some(held.found);
         }
+        let mut near = match (&page, clearance) {
+            (Some(_), true) => Some(ClearanceRows::new()?),
+            _ => None,
+        };
         if clearance {
             let program = ProgramInput { name: text.name(), text: text.reread()? };
-            let mut proven = self.prove(part, outcome.moved, source, program, None)?;
+            let mut hear = near.as_mut().map(|near| |line, distance| near.hear(line, distance));
+            let hear = hear.as_mut().map(|hear| hear as &mut Hearer<'_>);
+            let mut proven = self.prove(part, outcome.moved, source, program, hear)?;
             findings.append(&mut proven.findings);
             if findings.iter().any(|finding| finding.severity == Severity::Error) {
                 return Err(std::mem::take(findings).into());
@@ -320,7 +328,7 @@ impl<'a> ProgramMaker<'a> {
             let input = self.page(part, &outcome, findings);
             let name = text.name();
             let texts = PageTexts { source, name: &name, text: &mut text.reread()? };
-            input.write(rows, heard, texts, most, file)?;
+            input.write(rows, near, heard, texts, most, file)?;
         }
         Ok(outcome)
     }
@@ -376,6 +384,7 @@ impl<'a> ProgramMaker<'a> {
             program: &part.target,
             report: &outcome.report,
             verification: outcome.verification.as_ref(),
+            clearance: outcome.clearance.as_ref().map(ClearanceFound::summary),
             prediction: outcome.prediction.as_ref(),
             findings,
             job: match self.making.plan {

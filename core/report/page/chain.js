@@ -98,7 +98,11 @@ P.chain.values = (row, share) => {
 };
 
 // The size of the tool that is in use in a block, mm; null where nobody has told it.
-P.chain.cutter = (row) => P.m.meta.events.findLast((event) => event.kind === "tool" && event.row <= row)?.cutter || null;
+P.chain.tool = (row) => P.m.meta.events.findLast((event) => event.kind === "tool" && event.row <= row) || {};
+P.chain.cutter = (row) => P.chain.tool(row).cutter || null;
+
+// Its outline, as the machine file has it: what cuts and what does not; null where it has none.
+P.chain.outline = (row) => P.chain.tool(row).outline || null;
 
 // The length of the tool that is in use in a block, mm.
 P.chain.length = (row) => P.m.at("tool_length", row) ?? P.m.meta.tool_length;

@@ -24,6 +24,7 @@ P.charts.find = () => {
     { title: "Positions", lanes: axes.map((name) => lane("q." + name, name)) },
     { title: "Velocities", lanes: axes.map((name) => lane("v." + name, name, { zero: true, limit: rate(name, "max_feed", 60) })) },
     { title: "Accelerations", lanes: axes.map((name) => lane("a." + name, name, { zero: true, limit: rate(name, "max_accel", 1) })) },
+    { title: "Clearance", lanes: lane("clearance", "clear by", { zero: true }) },
     { title: "Prediction", lanes: [series ? timed("contour", "contour", { limit: tolerance }) : lane("contour", "contour", { zero: true, limit: tolerance }), timed("feed", "feed")] },
   ]
     .map(({ title, lanes }) => ({ title, lanes: lanes.flat() }))

@@ -120,6 +120,15 @@ P.colour.find = () => {
   share("deviation", "tip deviation", () => column("tolerance") || P.m.tolerance);
   share("axis_deviation", "axis deviation", () => P.m.axis_limits || P.m.turn);
   share("contour", "contour error", () => P.m.tolerance);
+  // The nearer, the worse: as a share of what is to be kept, or of the nearest approach where that is farther.
+  if (has("clearance")) {
+    const make = () => {
+      const values = column("clearance");
+      const near = Math.max(values.reduce((least, value) => (value < least ? value : least), Infinity), meta.clearance.keep, 1e-3);
+      return { value: (row) => near / Math.max(values[row], 1e-3), near, top: null };
+    };
+    modes.push({ id: "clearance", title: "clearance", unit: "mm", bad: true, make });
+  }
   share("feed", "feed");
   kinds("limit", "what limits the feed", meta.limits);
   kinds("kind", "kind of block", P.KINDS);

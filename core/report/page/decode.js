@@ -89,7 +89,7 @@ P.Column = class {
 
   // The value of one row; what follows from the rows before is there whole.
   at(row) {
-    return ["t1", "way"].includes(this.from) ? this.values[row] : this.part(row >> 6)[row & 63];
+    return ["t1", "way", "lines"].includes(this.from) ? this.values[row] : this.part(row >> 6)[row & 63];
   }
 
   // All values, or those of sixty-four rows.
@@ -315,6 +315,11 @@ P.load = async () => {
   // What is predicted of the blocks stands beside them, and for their times.
   const { blocks, predicted } = report.tables;
   if (predicted) for (const [name, column] of predicted.columns) blocks.columns.set(name, column);
+  // How near bodies come on a line of the program stands beside its blocks.
+  if (report.tables.clearance) {
+    const about = { from: "lines", name: "clearance", unit: "mm", decimals: 3 };
+    blocks.columns.set("clearance", new P.Column(about, blocks.rows, [], { report, columns: blocks.columns }));
+  }
   P.check(report);
   return report;
 };

@@ -113,6 +113,14 @@ P.derive = {
     }
     names.forEach((name, at) => columns.get(name).keep(values[at]));
   },
+  // How near bodies come in a block, told of its line; of several ways over a line the nearest. A block that does not move has
+  // none.
+  lines: ({ tables }, columns) => {
+    const { nc, clearance } = Object.fromEntries([...tables.clearance.columns].map(([name, { values }]) => [name, values]));
+    const least = new Map();
+    nc.forEach((line, at) => least.set(line, Math.min(clearance[at], least.get(line) ?? Infinity)));
+    columns.get("clearance").keep(Float64Array.from(columns.get("nc").values, (line) => least.get(line) ?? NaN));
+  },
   // The beginning of a block, told against the end of the one before.
   t1: (report, columns) => {
     const ends = columns.get("t1").values;

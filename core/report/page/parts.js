@@ -85,6 +85,7 @@ P.parts.build = (machine) => {
   const down = times(axis, -1);
   const length = Math.max(P.chain.length(P.state.row) || 0, 0);
   const cutter = P.chain.cutter(P.state.row);
+  const outline = P.chain.outline(P.state.row);
   const tip = P.chain.tip(machine, length);
   const { low, high, centre } = P.scene;
   const reach = (Math.hypot(high[0] - low[0], high[1] - low[1]) / 2) * 1.15;
@@ -155,7 +156,16 @@ P.parts.build = (machine) => {
   const free = cutter && cutter.stick_out && length ? Math.min(cutter.stick_out, length) : null;
   const shank = free ? add(tip, axis, free) : holder;
   const tool = 1.25 + P.TOOL;
-  if (cutter) {
+  // An outline in cones, z from `from` along `way`: it is true to size, whatever solids stand for.
+  const bare = P.shapes(made, []).round;
+  const turned = (tone, points, from, way) => points.slice(1).forEach(([z, r], at) => bare(last, tone, add(from, way, points[at][0]), add(from, way, z), points[at][1], r));
+  if (outline) {
+    turned(tool, outline.cutter, tip, axis);
+    turned(1.1 + P.HOLDER, outline.holder, machine.gauge, down);
+  }
+  if (outline && outline.cutter.length) {
+    // It is drawn.
+  } else if (cutter) {
     // The corner in chords; a flat end is a disc.
     const corner = cutter.corner_radius;
     const ring = (step) => [thick - corner * (1 - Math.sin((step * Math.PI) / 12)), add(tip, axis, corner * (1 - Math.cos((step * Math.PI) / 12)))];
@@ -218,7 +228,7 @@ P.parts.build = (machine) => {
   travel(machine.axes.slice(bed), tip, 1);
   travel(machine.axes.slice(0, bed), mount, -1);
   for (const name of ["faces", "edges", "boxes"]) made[name] = new Float32Array(made[name]);
-  P.parts.made = { ...made, deep: Math.max(size * 40, far * 4), machine, length, cutter };
+  P.parts.made = { ...made, deep: Math.max(size * 40, far * 4), machine, length, cutter, outline };
 };
 
 // Points that the machine takes up, for fitting the view: scene coordinates under the bodies given.

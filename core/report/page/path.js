@@ -197,7 +197,7 @@ P.path.draw = (moving) => {
   const machine = P.chain.at(P.state.row);
   const { made } = P.parts;
   // Another head or tool than is drawn.
-  if (machine && (made.machine !== machine || made.cutter !== P.chain.cutter(P.state.row) || made.length !== Math.max(P.chain.length(P.state.row) || 0, 0))) {
+  if (machine && (made.machine !== machine || made.cutter !== P.chain.cutter(P.state.row) || made.outline !== P.chain.outline(P.state.row) || made.length !== Math.max(P.chain.length(P.state.row) || 0, 0))) {
     P.parts.build(machine);
     P.path.renderer.mesh();
     P.path.tell();
@@ -278,10 +278,11 @@ P.path.tell = () => {
     told.push(el("div", { class: "kinds" }, seen));
   } else if (mode.unit) {
     const limit = mode.fixed || (mode.id === "axis_deviation" ? m.turn : m.tolerance);
-    const ends = mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)];
+    const far = mode.near && [P.quantity(mode.near, mode.unit), "nearer"];
+    const ends = far || (mode.top === null ? [`tolerance ${limit ? P.short(limit) + " " + P.unit(mode.unit) : ""}`, "above"] : [P.quantity(mode.top, mode.unit)]);
     // The tolerance stands in the middle, where the colours change.
     const by = mode.top ? 1 : 2;
-    told.push(strip(170, (share) => ((share *= by) > 1 ? colour.over : share * colour.top)), el("div", { class: "ends" }, ["0", ...ends].map((text) => el("span", {}, text))));
+    told.push(strip(170, (share) => ((share *= by) > 1 ? colour.over : share * colour.top)), el("div", { class: "ends" }, [far ? "far" : "0", ...ends].map((text) => el("span", {}, text))));
   }
   const { vectors, path } = scene;
   const notes = [];
@@ -289,9 +290,9 @@ P.path.tell = () => {
   if (has((point) => path.look[point * 4 + 1] === scene.RAPID, path.count)) notes.push("dashed: rapid");
   if (vectors && state.scale) notes.push(`vectors × ${state.scale.toLocaleString("en")}${vectors.step > 1 ? `, the largest of every ${vectors.step} points` : ""}${vectors.small ? (vectors.count ? ", none below half of the tolerance" : ": all are below half of the tolerance") : ""}`);
   if (state.machine && P.parts.made) {
-    const { cutter, length } = P.parts.made;
+    const { cutter, outline, length } = P.parts.made;
     const corner = cutter && cutter.corner_radius ? `, corner ${P.shown(cutter.corner_radius, "mm", P.POSITION)}` : "";
-    notes.push(cutter ? `tool: ⌀ ${P.shown(cutter.diameter, "mm", P.POSITION)}${corner}, ${P.position(length, "mm")} long` : "tool: diameter not known");
+    notes.push(outline ? `tool: as the machine file has it, ${P.position(length, "mm")} long` : cutter ? `tool: ⌀ ${P.shown(cutter.diameter, "mm", P.POSITION)}${corner}, ${P.position(length, "mm")} long` : "tool: diameter not known");
   }
   P.path.legend.replaceChildren(...told, el("div", { class: "quiet" }, notes.join(" · ")));
 };

@@ -20,6 +20,7 @@ P.verdict.build = (view) => {
   body.append(P.verdict.badge(meta.verdict));
   body.append(el("div", { class: "said" }, meta.verdict.sentences.map((sentence) => el("p", {}, sentence))));
   if (meta.maxima.length) part("Largest", P.verdict.maxima(meta.maxima));
+  if (meta.clearance) part("Clearance", P.verdict.clearance(meta.clearance));
   if (meta.warnings.length) part(`Found (${meta.warnings.length})`, P.verdict.warnings(meta.warnings));
   const { steps } = m;
   if (steps.length) part(`Operations and tools (${steps.length})`, ...P.verdict.steps(steps));
@@ -101,6 +102,16 @@ P.verdict.maxima = (maxima) => {
       el("tr", {}, el("td", { colspan: "2" }, one.limit ? bar : null, el("span", { class: "quiet" }, one.limit ? `of ${P.short(one.limit)} ${P.unit(one.unit)}${over ? ", exceeded" : ""} ` : ""), el("span", { class: "where" }, P.verdict.places(one)))),
     ];
   });
+  return el("table", { class: "maxima" }, el("tbody", {}, rows.flat()));
+};
+
+// Pairs of bodies, the nearest first, each with the place of its nearest approach.
+P.verdict.clearance = ({ pairs }) => {
+  const { el } = P;
+  const rows = pairs.map(({ bodies, clear_by, nearest, nc, not_clear }) => [
+    el("tr", {}, el("th", { scope: "row" }, bodies.join(" – ")), el("td", { class: "number" }, nearest === null ? "–" : P.position(nearest, "mm"))),
+    el("tr", {}, el("td", { colspan: "2" }, el("span", { class: not_clear ? "bad" : "quiet" }, not_clear ? `not clear in ${not_clear} motions ` : clear_by === null ? "" : `proven ${P.position(Math.floor(clear_by * 1e3 + 1e-3) / 1e3, "mm")} `), el("span", { class: "where" }, P.verdict.places({ nc })))),
+  ]);
   return el("table", { class: "maxima" }, el("tbody", {}, rows.flat()));
 };
 

@@ -46,6 +46,9 @@ pub struct Meta {
     pub head_rows: Vec<[u64; 2]>,
     /// Length from the gauge point to the tip, mm; of several tools the first.
     pub tool_length: f64,
+    /// What is known of pairs of bodies, where it was proven that nothing hits anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<ClearanceMeta>,
     /// Poses with all their digits.
     pub checks: Vec<PoseCheck>,
     /// What `--report-max` left out.
@@ -54,6 +57,30 @@ pub struct Meta {
     pub tables: Vec<TableMeta>,
     /// Texts of the document.
     pub texts: Vec<TextMeta>,
+}
+
+/// What is known of pairs of bodies along the program; how near any two come on each line stands in the table `clearance`.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ClearanceMeta {
+    /// Distance that all bodies keep at feed, mm.
+    pub keep: f64,
+    /// The pairs, those that come nearest first.
+    pub pairs: Vec<ClearancePairMeta>,
+}
+
+/// What is known of two bodies.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ClearancePairMeta {
+    /// Their names.
+    pub bodies: [String; 2],
+    /// They are never nearer on motions that are proven to be clear, mm.
+    pub clear_by: Option<f64>,
+    /// The nearest that was found, mm.
+    pub nearest: Option<f64>,
+    /// Where: line of the program.
+    pub nc: Option<u64>,
+    /// Motions on which they are not clear.
+    pub not_clear: u64,
 }
 
 /// Files without their folders, and the machine.
@@ -148,6 +175,18 @@ pub struct EventMeta {
     /// Size of the tool that comes, as far as it is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cutter: Option<CutterMeta>,
+    /// Its outline, where the machine file has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outline: Option<OutlineMeta>,
+}
+
+/// How far a tool reaches from its axis: points [z, r], mm.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct OutlineMeta {
+    /// What cuts, z from the tip towards the gauge point.
+    pub cutter: Vec<[f64; 2]>,
+    /// What does not cut, z from the gauge point towards the tip.
+    pub holder: Vec<[f64; 2]>,
 }
 
 /// Size of a tool, mm.

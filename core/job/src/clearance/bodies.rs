@@ -95,6 +95,15 @@ pub(super) fn of_tool(
     bodies
 }
 
+/// From the frame of the stock to that of the machine, every axis at zero: it is where the CL file has it, turned about the
+/// part's Z, and where the part sits.
+pub fn of_stock(machine: &Machine) -> Placement {
+    Placement {
+        rotation: Rotation3::from_axis_angle(&Vector3::z_axis(), machine.turn).into_inner(),
+        shift: machine.mount,
+    }
+}
+
 /// The shape of a fixture or of the stock, machine frame.
 fn given_shape(
     machine: &Machine,
@@ -102,12 +111,8 @@ fn given_shape(
     given: &GivenBody,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Shape> {
-    // The stock is where the CL file has it: turned about the part's Z, and where the part sits.
     let placed = match kind {
-        BodyKind::Stock => Placement {
-            rotation: Rotation3::from_axis_angle(&Vector3::z_axis(), machine.turn).into_inner(),
-            shift: machine.mount,
-        },
+        BodyKind::Stock => of_stock(machine),
         _ => Placement::identity(),
     };
     let pieces = match &given.shape {

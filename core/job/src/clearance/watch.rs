@@ -175,7 +175,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             self.begin(bodies);
             return;
         };
-        let outline = machine.outlines.iter().find(|outline| outline.number == number);
+        let outline = machine.outline(number);
         let tool = ToolShape { number, length, outline, radius: self.radius_of(number) };
         let mut lacks = Vec::new();
         bodies.extend(of_tool(machine, &tool, &mut lacks));

@@ -351,7 +351,8 @@ impl Observer for BlockRows<'_> {
                 let table = self.base.tool_table.as_ref();
                 let listed = table.and_then(|table| table.entry(tool.number, tool.register));
                 let size = cutter([tool.diameter, tool.corner_radius], listed);
-                self.marks.tool(row, format!("tool {}{name}", tool.number), size);
+                let outline = self.base.outline(tool.number);
+                self.marks.tool(row, format!("tool {}{name}", tool.number), size, outline);
             }
             Command::Operation(name) => event("operation", name.clone()),
             Command::Head(name) => {

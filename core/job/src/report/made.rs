@@ -9,7 +9,8 @@ use post_posting::report::{PostingReport, ReportedDeviation};
 use post_readback::verify::Verification;
 use post_report::meta::{AxisUsed, Maximum, Names, VerdictMeta};
 
-use super::{BlockRows, PartText, Parts, PredictedParts};
+use super::{BlockRows, ClearanceRows, PartText, Parts, PredictedParts};
+use crate::clearance::ClearanceSummary;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::predict::Prediction;
@@ -29,6 +30,8 @@ pub struct PostPage<'a> {
     pub report: &'a PostingReport,
     /// What reading it back found.
     pub verification: Option<&'a Verification>,
+    /// What was proven of it: nothing hits anything.
+    pub clearance: Option<ClearanceSummary>,
     /// What is predicted of it.
     pub prediction: Option<&'a Prediction>,
     /// What the user should know.
@@ -59,6 +62,7 @@ impl PostPage<'_> {
     pub fn write(
         &self,
         rows: BlockRows<'_>,
+        near: Option<ClearanceRows>,
         predicted: Option<PredictedParts>,
         texts: PageTexts<'_>,
         most: u64,
@@ -78,7 +82,7 @@ impl PostPage<'_> {
         meta.facts = self.facts.clone();
         meta.axes_used = self.axes_used();
         meta.warnings = super::warnings(self.findings, name);
-        meta.excludes = super::excludes();
+        meta.excludes = super::excludes(self.clearance.as_ref());
         meta.tool_length = self.report.tools.first().map_or(0.0, |tool| tool.length_mm);
         if let Some(found) = self.prediction {
             meta.maxima.extend(super::predicted_maxima(self.machine, found));
@@ -90,6 +94,9 @@ impl PostPage<'_> {
             }
         }
         let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
+        if let (Some(near), Some(proven)) = (near, &self.clearance) {
+            near.finish(proven, self.machine.clearance.keep, &mut parts, &mut meta)?;
+        }
         if let Some(predicted) = predicted {
             predicted.finish(&mut parts)?;
         }
@@ -113,6 +120,9 @@ impl PostPage<'_> {
                 "It was read back: {} cuts and {} holes are as the CL file asks.",
                 held.cuts, held.holes
             ));
+        }
+        if let Some(proven) = &self.clearance {
+            sentences.push(format!("Nothing hits anything: {}.", proven.fact()));
         }
         let warned = self.findings.len();
         let (kind, word) = match warned {

@@ -1,7 +1,7 @@
 //! What is marked on the rows of a page: events, and where heads are swapped in.
 
-use post_machine::description::ToolData;
-use post_report::meta::{CutterMeta, EventMeta, Meta};
+use post_machine::description::{ToolData, ToolOutline};
+use post_report::meta::{CutterMeta, EventMeta, Meta, OutlineMeta};
 
 /// More events than this are counted and not listed.
 const MOST_EVENTS: usize = 5000;
@@ -17,12 +17,22 @@ pub struct Marks {
 impl Marks {
     /// Before `row` something happens.
     pub fn event(&mut self, row: u64, kind: &'static str, text: impl Into<String>) {
-        self.push(EventMeta { row, kind, text: text.into(), cutter: None });
+        self.push(EventMeta { row, kind, text: text.into(), ..EventMeta::default() });
     }
 
-    /// Before `row` a tool comes.
-    pub fn tool(&mut self, row: u64, text: String, cutter: Option<CutterMeta>) {
-        self.push(EventMeta { row, kind: "tool", text, cutter });
+    /// Before `row` a tool comes; its outline is that of the machine file, if it has one.
+    pub fn tool(
+        &mut self,
+        row: u64,
+        text: String,
+        cutter: Option<CutterMeta>,
+        outline: Option<&ToolOutline>,
+    ) {
+        let outline = outline.map(|outline| OutlineMeta {
+            cutter: outline.cutter.clone(),
+            holder: outline.holder.clone(),
+        });
+        self.push(EventMeta { row, kind: "tool", text, cutter, outline });
     }
 
     fn push(&mut self, event: EventMeta) {

@@ -7,8 +7,10 @@ mod block_rows;
 mod branch;
 mod cl_points;
 mod cl_window;
+mod clearance_rows;
 mod derived;
 mod findings;
+mod given_bodies;
 mod machine;
 mod made;
 mod marks;
@@ -26,6 +28,7 @@ mod told_by_prediction;
 
 pub use block_rows::BlockRows;
 pub use cl_window::ClWindow;
+pub use clearance_rows::ClearanceRows;
 pub use findings::warnings;
 pub use machine::machine;
 pub use made::{PageTexts, PostPage};

@@ -433,7 +433,8 @@ impl<'m> MotionRows<'m> {
                     let table = self.machine.tool_table.as_ref().filter(|table| !table.by_register);
                     let listed = told_number.and_then(|told| table?.entry(told, told));
                     let size = cutter([None, None], listed);
-                    self.marks.tool(self.came, format!("tool{number}{name}"), size);
+                    let outline = told_number.and_then(|told| self.base.outline(told));
+                    self.marks.tool(self.came, format!("tool{number}{name}"), size, outline);
                 }
                 self.tool = *number;
             }

@@ -13,6 +13,7 @@ use post_report::table::TableWriter;
 use post_report::text::TextWriter;
 
 use super::solids;
+use crate::clearance::ClearanceSummary;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, FileFault, Scratch};
 use crate::session::Session;
@@ -203,14 +204,28 @@ pub fn fault(error: io::Error) -> Failure {
     FileFault::NoWaiting { name: NAME.to_owned(), folder: std::env::temp_dir(), error }.into()
 }
 
-/// What "certified" leaves out.
-pub fn excludes() -> Vec<String> {
-    [
+/// What "certified" leaves out; of bodies what has none, where clearance was `proven`.
+pub fn excludes(proven: Option<&ClearanceSummary>) -> Vec<String> {
+    let bodies = match proven {
+        None => {
+            "Collisions: it was not asked whether anything hits anything (--clearance).".to_owned()
+        }
+        Some(proven) => {
+            let mut lacks = proven.without_body.clone();
+            lacks.extend(["hoses", "chips", "the way of a tool change"].map(str::to_owned));
+            format!(
+                "Collisions with what has no body: {}. Of the stock nothing is taken away.",
+                lacks.join(", ")
+            )
+        }
+    };
+    let mut excludes = [
         "What a record of the CL file is taken to mean: the book says how it is read (CL files).",
         "What the control does between blocks: smoothing, look-ahead, servo lag. A prediction (--predict, post predict) tells of them.",
         "The machine's own errors, as far as its file does not describe them.",
-        "Collisions: tool, holder, part and machine are not known as bodies.",
     ]
     .map(str::to_owned)
-    .to_vec()
+    .to_vec();
+    excludes.push(bodies);
+    excludes
 }

@@ -1,41 +1,84 @@
-//! Shapes of the machine's bodies, as the page draws them.
+//! Shapes of the machine's bodies, fixtures and stock among them, as the page draws them.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::BufReader;
 
-use post_machine::description::{self, Machine};
-use post_machine::diagnostic::Diagnostic;
+use nalgebra::Vector3;
+use post_clearance::placement::Placement;
+use post_machine::description::{GivenShape, Machine};
+use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_report::meta::Meta;
 use post_report::solid::{DrawnSolid, MOST_EDGES, MOST_TRIANGLES};
 use post_report::table::{TableColumn, TableWriter};
 
+use super::given_bodies;
 use super::parts::{Parts, fault};
+use crate::clearance;
 use crate::failure::Failure;
 
-/// A shape that a machine file names, few enough triangles for a frame.
-type Shape<'m> = (&'m description::Solid, DrawnSolid);
+/// A body that is drawn as a machine file describes it.
+#[derive(Clone)]
+struct DrawnBody<'m> {
+    /// What it hangs on: 0 is the part, n what follows the nth axis of the chain.
+    link: usize,
+    /// It stands in place of what follows from the chain.
+    whole: bool,
+    shape: Cow<'m, GivenShape>,
+    place: &'m Option<SourcePlace>,
+    /// The stock: from its frame to the machine's. Its edges alone are drawn, the path goes through it.
+    stock: Option<Placement>,
+}
+
+/// A body and its shape, few enough triangles for a frame.
+type Shape<'m> = (DrawnBody<'m>, DrawnSolid);
 
 /// What cannot be shown of the shapes that a machine file names; a picture lacks them, and nothing else.
 pub fn faults(machine: &Machine) -> Vec<Diagnostic> {
-    sets(machine).into_iter().flat_map(|set| shapes(set).1).collect()
+    sets(machine).iter().flat_map(|set| shapes(set).1).collect()
 }
 
-/// The shapes of a machine and those of its heads that have others.
-fn sets(machine: &Machine) -> Vec<&[description::Solid]> {
+/// The bodies of a machine and those of its heads that have others.
+fn sets(machine: &Machine) -> Vec<Vec<DrawnBody<'_>>> {
     let heads = machine.heads.iter().map(|head| &head.machine);
-    let mut sets: Vec<&[description::Solid]> = Vec::new();
+    let mut sets: Vec<Vec<DrawnBody<'_>>> = Vec::new();
     for machine in std::iter::once(machine).chain(heads) {
-        if sets.iter().all(|set| !same(set, &machine.solids)) {
-            sets.push(&machine.solids);
+        let bodies = bodies(machine);
+        if sets.iter().all(|set| !same(set, &bodies)) {
+            sets.push(bodies);
         }
     }
     sets
 }
 
+/// The bodies of a machine without its heads.
+fn bodies(machine: &Machine) -> Vec<DrawnBody<'_>> {
+    let solids = machine.solids.iter().map(|solid| DrawnBody {
+        link: solid.body,
+        whole: solid.whole,
+        shape: Cow::Owned(GivenShape::File(solid.file.clone())),
+        place: &solid.place,
+        stock: None,
+    });
+    let fixtures = machine.fixtures.iter().map(|body| (body, None));
+    let stock = machine.stock.iter().map(|body| (body, Some(clearance::of_stock(machine))));
+    let given = fixtures.chain(stock).map(|(body, stock)| DrawnBody {
+        link: body.link,
+        whole: false,
+        shape: Cow::Borrowed(&body.shape),
+        place: &body.place,
+        stock,
+    });
+    solids.chain(given).collect()
+}
+
 /// They show the same, wherever they are named.
-fn same(one: &[description::Solid], other: &[description::Solid]) -> bool {
-    let key = |solid: &description::Solid| (solid.body, solid.whole, solid.file.clone());
-    one.iter().map(key).eq(other.iter().map(key))
+fn same(one: &[DrawnBody<'_>], other: &[DrawnBody<'_>]) -> bool {
+    let equal = |one: &DrawnBody<'_>, other: &DrawnBody<'_>| {
+        let (hung, other_hung) = ((one.link, one.whole), (other.link, other.whole));
+        hung == other_hung && one.shape == other.shape && one.stock == other.stock
+    };
+    one.len() == other.len() && one.iter().zip(other).all(|(one, other)| equal(one, other))
 }
 
 /// Adds the shapes of a machine and its heads to the parts of a report; what cannot be shown comes back.
@@ -58,16 +101,16 @@ pub(super) fn add(
     let mut faults = Vec::new();
     let heads = machine.heads.iter().map(|head| &head.machine);
     let machines: Vec<&Machine> = std::iter::once(machine).chain(heads).collect();
-    for (number, set) in sets(machine).into_iter().enumerate() {
+    for (number, set) in sets(machine).iter().enumerate() {
         let (shapes, found) = shapes(set);
         faults.extend(found);
         let told = meta.machine.iter_mut().chain(&mut meta.heads);
-        for (_, told) in machines.iter().zip(told).filter(|(one, _)| same(&one.solids, set)) {
+        for (_, told) in machines.iter().zip(told).filter(|(one, _)| same(&bodies(one), set)) {
             told.shapes = number;
             told.solid = shapes
                 .iter()
                 .filter(|(given, _)| given.whole)
-                .map(|(given, _)| given.body)
+                .map(|(given, _)| given.link)
                 .collect();
         }
         for (given, solid) in &shapes {
@@ -75,7 +118,7 @@ pub(super) fn add(
             let edges = solid.edges.iter().map(|corners| corners.as_slice());
             for corners in triangles.chain(edges) {
                 let [set, count, body] =
-                    [number, corners.len(), given.body].map(|value| value as f64);
+                    [number, corners.len(), given.link].map(|value| value as f64);
                 for &[x, y, z] in corners {
                     table.row(&[set, count, body, x, y, z]).map_err(fault)?;
                 }
@@ -89,13 +132,22 @@ pub(super) fn add(
 }
 
 /// The shapes that can be read, few enough for a frame; and why others cannot.
-fn shapes(set: &[description::Solid]) -> (Vec<Shape<'_>>, Vec<Diagnostic>) {
+fn shapes<'m>(set: &[DrawnBody<'m>]) -> (Vec<Shape<'m>>, Vec<Diagnostic>) {
     let (mut shapes, mut faults): (Vec<Shape<'_>>, Vec<Diagnostic>) = Default::default();
+    let files = set.iter().filter(|given| matches!(*given.shape, GivenShape::File(_)));
     // Each has an equal part: a file is read once, whatever the others hold.
-    let part = MOST_TRIANGLES / set.len().max(1);
+    let part = MOST_TRIANGLES / files.count().max(1);
     for given in set {
         match load(given, part) {
-            Ok(solid) => shapes.push((given, solid)),
+            Ok(mut solid) => {
+                if let Some(stock) = &given.stock {
+                    solid.triangles.clear();
+                    for corner in solid.edges.iter_mut().flatten() {
+                        *corner = stock.point(Vector3::from(*corner)).into();
+                    }
+                }
+                shapes.push((given.clone(), solid));
+            }
             Err(fault) => faults.push(*fault),
         }
     }
@@ -122,8 +174,14 @@ pub fn share(needs: impl Iterator<Item = usize>, all: usize) -> usize {
 }
 
 /// A shape of at most so many triangles; or why there is none.
-fn load(given: &description::Solid, most: usize) -> Result<DrawnSolid, Box<Diagnostic>> {
-    let path = &given.file;
+fn load(given: &DrawnBody<'_>, most: usize) -> Result<DrawnSolid, Box<Diagnostic>> {
+    let path = match &*given.shape {
+        GivenShape::File(path) => path,
+        GivenShape::Block(corners) => return Ok(given_bodies::block(*corners)),
+        GivenShape::Cylinder { ends, radius } => {
+            return Ok(given_bodies::cylinder(*ends, *radius));
+        }
+    };
     let fault = |why: &dyn std::fmt::Display, help: &str| {
         let message = format!("the solid {} is not shown: {why}", path.display());
         let instead = match given.whole {

@@ -11,9 +11,9 @@ use serde::Serialize;
 use super::JobMachine;
 use super::nc_program::{self, ProgramFile};
 use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyWatch};
-use super::report::{ClWindow, ExtraColumns, MotionRows};
+use super::report::{ClWindow, ClearanceRows, ExtraColumns, MotionRows};
 use super::result_files::ResultFiles;
-use crate::clearance::{self, ClearanceFound, ClearanceSummary};
+use crate::clearance::{self, ClearanceFound, ClearanceSummary, Hearer};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job_file::is_marked;
@@ -132,11 +132,17 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     if let Some((map, file)) = map {
         map.end(file)?;
     }
+    let mut near = match (&texts.page, request.clearance) {
+        (Some(_), true) => Some(ClearanceRows::new()?),
+        _ => None,
+    };
     let clearance = match request.clearance {
         // It is run once more: rapids at feed are told from cuts, and what is refused of it was said.
         true => {
             let text = Box::new(program.text()?);
-            let mut proven = clearance::of_job(&reading, &mut source, name, text, None)?;
+            let mut hear = near.as_mut().map(|near| |line, distance| near.hear(line, distance));
+            let hear = hear.as_mut().map(|hear| hear as &mut Hearer<'_>);
+            let mut proven = clearance::of_job(&reading, &mut source, name, text, hear)?;
             proven.findings.retain(|finding| !held.findings.contains(finding));
             held.findings.append(&mut proven.findings);
             Some(proven)
@@ -153,8 +159,9 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
         let names = [&request.program, &job.input];
         let threads = reading.threads;
         let held = &held;
-        let told = VerifyPage { session, machine: &machine, held, names, tolerances, threads };
-        told.write(rows, &mut source, &program, request.report.most(), page)?;
+        let (machine, clearance) = (&machine, clearance.as_ref());
+        let told = VerifyPage { session, machine, held, clearance, names, tolerances, threads };
+        told.write(rows, near, &mut source, &program, request.report.most(), page)?;
     }
     let texts = texts.all();
     let printed = texts.iter().any(AtomicFile::is_standard);

@@ -6,11 +6,12 @@ use post_machine::description::Machine;
 use post_readback::verify::{BlockReport, WorstDeviation};
 use post_report::meta::{Maximum, Names, VerdictMeta};
 
+use crate::clearance::ClearanceFound;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::nc_program::ProgramFile;
 use crate::read_back::VerifiedProgram;
-use crate::report::{self, LineFacts, MotionRows, PartText, Parts};
+use crate::report::{self, ClearanceRows, LineFacts, MotionRows, PartText, Parts};
 use crate::session::Session;
 use crate::text::clock;
 
@@ -32,6 +33,8 @@ pub struct VerifyPage<'a> {
     pub machine: &'a Machine,
     /// What was found.
     pub held: &'a VerifiedProgram,
+    /// What was proven of clearance, or was not.
+    pub clearance: Option<&'a ClearanceFound>,
     /// The program and the CL file.
     pub names: [&'a PathArg; 2],
     /// Over the machine's: mm, radians.
@@ -48,6 +51,7 @@ impl VerifyPage<'_> {
     pub fn write(
         &self,
         rows: MotionRows<'_>,
+        near: Option<ClearanceRows>,
         source: &mut ClSource,
         program: &ProgramFile,
         most: u64,
@@ -98,8 +102,13 @@ impl VerifyPage<'_> {
                 warning.text = report::without_folder(&warning.text, file.path());
             }
         }
-        meta.excludes = report::excludes();
+        let proven = self.clearance.map(ClearanceFound::summary);
+        meta.facts.extend(proven.as_ref().map(|proven| fact("clearance", proven.fact())));
+        meta.excludes = report::excludes(proven.as_ref());
         let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
+        if let (Some(near), Some(proven)) = (near, &proven) {
+            near.finish(proven, self.machine.clearance.keep, &mut parts, &mut meta)?;
+        }
         rows.finish(&mut parts, &mut meta)?;
         let (mut text, mut cl) = (program.text()?, source.open()?);
         let nc = PartText { name: "nc", file: &program.name, text: &mut text };
@@ -111,7 +120,9 @@ impl VerifyPage<'_> {
     fn verdict(&self) -> VerdictMeta {
         let found = &self.held.found;
         let faults = found.faults.len();
+        let not_clear = self.clearance.is_some_and(ClearanceFound::is_wrong);
         let (kind, word) = match (self.held.is_wrong(), self.held.findings.is_empty()) {
+            (true, _) if not_clear && faults == 0 => ("bad", "Something is hit, or may be"),
             (true, _) => ("bad", "Not what the CL file asks for"),
             (false, false) => ("warn", "As the CL file asks, with warnings"),
             (false, true) => ("good", "As the CL file asks"),
@@ -123,6 +134,12 @@ impl VerifyPage<'_> {
         if faults > 0 {
             let more = if found.gave_up { " and more" } else { "" };
             sentences.push(format!("{faults}{more} faults were found: they are listed below."));
+        }
+        if not_clear {
+            sentences.push(
+                "That nothing hits anything is not proven: what is not clear is listed below."
+                    .to_owned(),
+            );
         }
         VerdictMeta { kind, word: word.to_owned(), sentences }
     }

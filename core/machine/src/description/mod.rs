@@ -368,6 +368,11 @@ pub enum OptionValue {
 }
 
 impl Machine {
+    /// How far a tool reaches from its axis, where the file says it.
+    pub fn outline(&self, number: u32) -> Option<&ToolOutline> {
+        self.outlines.iter().find(|outline| outline.number == number)
+    }
+
     /// The machine with a tool of `length` mm in it and its indexed axes where they start, ready to be solved.
     ///
     /// # Errors

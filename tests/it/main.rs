@@ -14,6 +14,7 @@ mod ceilings;
 mod changes;
 mod check;
 mod check_posts;
+mod clear_choice;
 mod clearance;
 mod command;
 mod common;

@@ -16,6 +16,7 @@ use post_posting::program::ReadingOptions;
 use post_posting::report::{PluginUse, PostingReport};
 use post_posting::{Observer, PathShift, Post, PostingRequest, ProgramPreview, TextSink};
 
+use super::clearance::ChoiceBodies;
 use super::plugin_finder;
 use crate::failure::Failure;
 use crate::files::{ClInput, ClPieces, ClSource, FileFault, NullSink, PathArg, ReadAhead};
@@ -101,10 +102,15 @@ impl PostingPass<'_> {
         let Self { machine, request, threads, dialect, model } = self;
         let opened = machine.with_part_anywhere();
         let machine = opened.as_ref().unwrap_or(machine);
+        let mut told = Vec::new();
+        let mut bodies = ChoiceBodies::of(machine, &mut told)?;
         // Blocks are shown with the lines that they end on: whoever looks on waits for the text of each batch.
         let beside_text = threads > NonZeroUsize::MIN && beside.observer.is_none();
         let post = Post::new(machine, request, dialect, model, sink);
         let mut post = post.map_err(|finding| *finding)?;
+        if let Some(bodies) = &mut bodies {
+            post.keep_clear(bodies);
+        }
         if let Some(shift) = beside.shift {
             post.shift(shift);
         }
@@ -116,7 +122,9 @@ impl PostingPass<'_> {
         }
         if !beside_text {
             read(session, ClPieces::new(input, None), &mut post)?;
-            return Ok(post.finish());
+            let (report, found) = post.finish();
+            told.extend(found);
+            return Ok((report, told));
         }
         let ahead = ReadAhead::default();
         let pieces = ClPieces::new(input, Some(&ahead));
@@ -124,7 +132,9 @@ impl PostingPass<'_> {
         thread::scope(|scope| {
             post.write_beside(scope, &read_some);
             read(session, pieces, &mut post)?;
-            Ok(post.finish())
+            let (report, found) = post.finish();
+            told.extend(found);
+            Ok((report, told))
         })
     }
 

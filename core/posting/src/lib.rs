@@ -45,7 +45,7 @@ mod window;
 pub use blocks::{
     BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, NominalTime, PlannedTime,
 };
-pub use configuration::whole_pass;
+pub use configuration::{BodyClearance, ClearTool, Contact, TrialWay, TrialWayKind, whole_pass};
 pub use emit::SpareWork;
 pub use findings::MOST_FAULTS;
 pub use job_facts::{JobFacts, ProgramPreview};

@@ -14,7 +14,7 @@ use post_plugin::{DialectSession, ModelSession};
 
 use crate::accuracy::RunColumns;
 use crate::blocks::{BlockStage, MotionBlock};
-use crate::configuration::{ChosenPoint, ConfigurationStage};
+use crate::configuration::{BodyClearance, ChosenPoint, ConfigurationStage};
 use crate::emit::{EmitStage, SpareWork};
 use crate::expand::{ExpandStage, PathMove};
 use crate::findings::Findings;
@@ -281,6 +281,11 @@ impl<'a> Post<'a> {
     pub fn shift(&mut self, shift: &'a mut dyn PathShift) {
         let bound = self.machine.accuracy.servo_compensation.unwrap_or(0.0);
         self.stages.shift = Some(ShiftStage::new(shift, bound));
+    }
+
+    /// Has solutions chosen with which bodies of the machine stay clear of one another, as far as `bodies` says.
+    pub fn keep_clear(&mut self, bodies: &'a mut dyn BodyClearance) {
+        self.stages.configuration.keep_clear(bodies);
     }
 
     /// Takes a record.

@@ -1,6 +1,7 @@
 //! Whether anything hits anything while an NC program runs.
 
 mod bodies;
+mod choice;
 mod names;
 mod of_job;
 mod summary;
@@ -21,11 +22,10 @@ use crate::failure::Failure;
 use crate::files::PathArg;
 use crate::nc_program::{self, NcControl, ProgramFile, ProgramText, open_as};
 use crate::session::Session;
-pub(crate) use bodies::of_stock;
-
 use bodies::link_name;
 use watch::ClearanceWatch;
 
+pub(crate) use choice::ChoiceBodies;
 pub use of_job::of_job;
 pub use summary::{ClearanceSummary, PairSummary};
 pub use watch::{Hearer, PairRow};

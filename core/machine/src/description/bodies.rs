@@ -70,6 +70,8 @@ keys! {
         pairs: Vec<ClearancePairFile>,
         /// How the axes of a rapid go where the control does not keep the tip.
         rapid_axes: RapidAxes,
+        /// Of several ways to turn the axes those are taken on which bodies stay clear, where there are any.
+        choose: bool = Bounds::OFF,
     }
 }
 
@@ -187,6 +189,8 @@ pub struct ClearanceRules {
     pub pairs: Vec<KeptPair>,
     /// How the axes of a rapid go.
     pub rapid_axes: RapidAxes,
+    /// Solutions are chosen that keep bodies clear.
+    pub choose: bool,
 }
 
 impl ClearanceRules {
@@ -286,6 +290,7 @@ impl Builder<'_> {
             ignore: file.ignore.iter().map(|pair| self.body_pair(pair)).collect(),
             pairs,
             rapid_axes: file.rapid_axes,
+            choose: file.choose,
         }
     }
 

@@ -1,8 +1,9 @@
 //! Cost of a path through the trellis: first what should not be at all, then how far the axes travel.
 
-/// Costs are compared place by place: rewinds, points on a side that is not preferred, travel.
+/// Costs are compared place by place: ways that hit something, rewinds, points on a side that is not preferred, travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PathCost {
+    hits: u32,
     rewinds: u32,
     against: u32,
     /// Travel as [`super::metric::TravelMeasure`] counts it; infinite where there is no way.
@@ -13,8 +14,8 @@ pub(crate) struct PathCost {
 const EQUAL: f64 = 1e-9;
 
 impl PathCost {
-    pub(crate) const NONE: Self = Self { rewinds: 0, against: 0, travel: 0.0 };
-    pub(crate) const NO_WAY: Self = Self { rewinds: 0, against: 0, travel: f64::INFINITY };
+    pub(crate) const NONE: Self = Self { hits: 0, rewinds: 0, against: 0, travel: 0.0 };
+    pub(crate) const NO_WAY: Self = Self { travel: f64::INFINITY, ..Self::NONE };
 
     /// Whether there is a way.
     #[inline]
@@ -25,11 +26,13 @@ impl PathCost {
     /// Adds `travel`, and the number of axes on a side that is not preferred.
     #[inline]
     pub(crate) fn and(self, travel: f64, against: u32) -> Self {
-        Self {
-            rewinds: self.rewinds,
-            against: self.against + against,
-            travel: self.travel + travel,
-        }
+        Self { against: self.against + against, travel: self.travel + travel, ..self }
+    }
+
+    /// Adds ways on which bodies are not clear of one another.
+    #[inline]
+    pub(crate) fn and_hits(self, hits: u32) -> Self {
+        Self { hits: self.hits + hits, ..self }
     }
 
     /// Goes on by a rewind.
@@ -40,6 +43,7 @@ impl PathCost {
     /// What is left of it when every way has cost `base` so far.
     pub(crate) fn beyond(self, base: &Self) -> Self {
         Self {
+            hits: self.hits.saturating_sub(base.hits),
             rewinds: self.rewinds.saturating_sub(base.rewinds),
             against: self.against.saturating_sub(base.against),
             travel: self.travel - base.travel,
@@ -52,8 +56,8 @@ impl PathCost {
         if !self.is_way() || !other.is_way() {
             return self.is_way();
         }
-        let penalty = (self.rewinds, self.against);
-        let other_penalty = (other.rewinds, other.against);
+        let penalty = (self.hits, self.rewinds, self.against);
+        let other_penalty = (other.hits, other.rewinds, other.against);
         if penalty != other_penalty {
             return penalty < other_penalty;
         }
@@ -62,7 +66,7 @@ impl PathCost {
 
     /// Order for sorting.
     pub(crate) fn order(&self, other: &Self) -> std::cmp::Ordering {
-        let key = |cost: &Self| (!cost.is_way(), cost.rewinds, cost.against);
+        let key = |cost: &Self| (!cost.is_way(), cost.hits, cost.rewinds, cost.against);
         key(self).cmp(&key(other)).then(self.travel.total_cmp(&other.travel))
     }
 }

@@ -5,6 +5,7 @@
 //! decided among all others, and put together again after that.
 
 mod backtrace;
+mod clear;
 mod columns;
 mod cost;
 mod cycle_time;
@@ -38,6 +39,7 @@ use crate::expand::{FixedAxis, PathMove};
 use crate::findings::Findings;
 use crate::program::{Command, StraightMove, ToolChange};
 use crate::stream::{BatchSink, HoleMoves, StreamItem, StreamPoint};
+pub use clear::{BodyClearance, ClearTool, Contact, TrialWay, TrialWayKind};
 use lengths::LengthAxisCheck;
 use pending_element::PendingElement;
 pub(crate) use route::ChosenPoint;
@@ -162,6 +164,12 @@ impl<'a> ConfigurationStage<'a> {
         })
     }
 
+    /// Has ways of the machine chosen on which its bodies stay clear of one another, as far as `bodies` says.
+    pub(crate) fn keep_clear(&mut self, bodies: &'a mut dyn BodyClearance) {
+        self.route.keep_clear_of(bodies);
+        self.take_tool();
+    }
+
     /// Points taken so far.
     pub(crate) fn moves(&self) -> u64 {
         self.moves
@@ -229,6 +237,7 @@ impl<'a> ConfigurationStage<'a> {
 
     /// The file ends: everything is decided.
     pub(crate) fn finish(&mut self, out: &mut ConfiguredSink<'_>) {
+        self.route.departs = true;
         self.settle(out);
     }
 
@@ -283,6 +292,7 @@ impl<'a> ConfigurationStage<'a> {
             _ => false,
         };
         if leaves || self.between >= MOST_WAITING {
+            self.route.departs = leaves;
             self.settle(out);
         }
         if self.waiting.is_empty() {
@@ -325,6 +335,7 @@ impl<'a> ConfigurationStage<'a> {
     /// Has everything decided, and hands it on.
     fn settle(&mut self, out: &mut ConfiguredSink<'_>) {
         self.route.settle_all();
+        self.route.departs = false;
         self.drain(out);
     }
 
@@ -332,6 +343,9 @@ impl<'a> ConfigurationStage<'a> {
     fn drain(&mut self, out: &mut ConfiguredSink<'_>) {
         let mut chosen = std::mem::take(&mut self.chosen);
         self.route.take_chosen(&mut chosen);
+        for (line, finding) in self.route.told.drain(..) {
+            self.findings.at(line, finding);
+        }
         for next in chosen.drain(..) {
             let arrives = next.arrives;
             self.hand_on(next, out);
@@ -382,6 +396,7 @@ impl<'a> ConfigurationStage<'a> {
                 self.measure(tool);
                 self.tool = Some(tool.clone());
                 tool.length = self.length;
+                self.take_tool();
                 self.equip(line);
             }
             Command::Index { axis, angle } => self.index(line, *axis, *angle),
@@ -393,6 +408,8 @@ impl<'a> ConfigurationStage<'a> {
                 self.lengths.swap_head(name);
                 self.route.leave();
                 self.machine = &head.machine;
+                // Its bodies are not known.
+                self.route.judge.bodies = None;
                 // A head may have lengths of its own, and a spindle of its own.
                 if let Some(tool) = self.tool.take() {
                     self.measure(&tool);
@@ -456,6 +473,19 @@ impl<'a> ConfigurationStage<'a> {
         if let Ok(node) = placed {
             self.route.begin_at(node.trace.joints);
         }
+    }
+
+    /// The tool in use is another body.
+    fn take_tool(&mut self) {
+        let Some(bodies) = &mut self.route.judge.bodies else {
+            return;
+        };
+        let tool = self.tool.as_ref().map(|tool| ClearTool {
+            number: tool.number,
+            length: self.length,
+            diameter: tool.diameter,
+        });
+        bodies.equip(tool.as_ref());
     }
 
     /// Takes machine and tool length into the route.

@@ -18,8 +18,9 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Unreachable};
 
 use super::backtrace::Backtrace;
+use super::clear::BodyTrial;
 use super::solution::SolutionSummary;
-use super::trellis::{CutChecker, CutEnd, Trellis};
+use super::trellis::{ArrivalKind, CutChecker, CutEnd, Trellis};
 
 /// A point of the path with the axis values that were chosen for it.
 #[derive(Clone, Debug)]
@@ -62,6 +63,10 @@ pub(crate) struct Route<'a> {
     /// Axis values before a rewind: see `rewind`.
     pub(super) rewound: Vec<Joints>,
     pub(super) judge: CutTrial<'a>,
+    /// The tool leaves the part behind the last of the points that are being settled.
+    pub(super) departs: bool,
+    /// What is to be said of points that were settled, by line.
+    pub(super) told: Vec<(u64, Diagnostic)>,
     /// Redundant axes can be put elsewhere as long as the last rapid is not settled.
     pub(super) tries_positions: bool,
     pub(super) chosen: Vec<ChosenPoint>,
@@ -95,6 +100,10 @@ pub(super) struct CutTrial<'a> {
     linearise: Lineariser,
     /// The tip counts too, not the tool axis alone.
     pub(super) strict: bool,
+    /// What the ways are held against beside that.
+    pub(super) bodies: Option<BodyTrial<'a>>,
+    /// Ways that hit something cost more.
+    pub(super) weighs: bool,
 }
 
 impl CutChecker for CutTrial<'_> {
@@ -119,6 +128,16 @@ impl CutChecker for CutTrial<'_> {
             planned.tolerances.tip = f64::INFINITY;
         }
         self.linearise.comes_through(&planned)
+    }
+
+    #[inline]
+    fn hits(&mut self, placer: &Placer, kind: ArrivalKind, from: &Joints, to: &Joints) -> u32 {
+        match &mut self.bodies {
+            Some(bodies) if self.weighs => {
+                u32::from(bodies.arrives(self.machine, placer, kind, from, to).is_some())
+            }
+            _ => 0,
+        }
     }
 }
 
@@ -172,7 +191,15 @@ impl<'a> Route<'a> {
             mark: 0,
             near,
             rewound: Vec::new(),
-            judge: CutTrial { machine, linearise: Lineariser::default(), strict: false },
+            judge: CutTrial {
+                machine,
+                linearise: Lineariser::default(),
+                strict: false,
+                bodies: None,
+                weighs: false,
+            },
+            departs: false,
+            told: Vec::new(),
             tries_positions: tries_positions(machine),
             chosen: Vec::new(),
             way: Backtrace::default(),

@@ -26,7 +26,7 @@ impl Route<'_> {
             return;
         };
         let waiting = layers.len() - usize::from(self.anchored);
-        let look_ahead = self.machine.solution.look_ahead;
+        let look_ahead = self.look_ahead();
         if layer.count == 1 && !self.trellis.eased(layer.latitude.0) && !self.tries_positions {
             if self.anchored && layers.len() == 2 {
                 self.settle_only();
@@ -95,12 +95,16 @@ impl Route<'_> {
         self.ease(&mut way);
         let mut upto = upto;
         if !self.comes_through(&way, 1..count)
-            && let Some(exact) = self.exact()
+            && let Some(exact) = self.rebuilt(Pole::Exact)
         {
             self.trellis.layers = exact.layers;
             self.trellis.states = exact.states;
             best = self.walk_back(&mut way).unwrap_or(best);
             // What lies after the newest point came from the way that is not taken.
+            upto = count - 1;
+        }
+        if let Some(hit) = self.first_hit(&way) {
+            best = self.keep_clear(&mut way, best, hit);
             upto = count - 1;
         }
         self.hand_out(&way, upto);
@@ -111,7 +115,7 @@ impl Route<'_> {
     }
 
     /// Walks the cheapest way back from its end; gives the state that it ends in.
-    fn walk_back(&self, way: &mut Backtrace) -> Option<usize> {
+    pub(super) fn walk_back(&self, way: &mut Backtrace) -> Option<usize> {
         let best = self.trellis.best()?;
         let count = self.trellis.layers.len();
         way.eased.clear();
@@ -123,27 +127,27 @@ impl Route<'_> {
         Some(best)
     }
 
-    /// The trellis of the points that wait, every point met exactly; none where no way leads through it, or where the
+    /// The trellis of the points that wait, with poles met in this way; none where no way leads through it, or where the
     /// tool is drawn back on the way.
-    fn exact(&mut self) -> Option<Trellis> {
+    pub(super) fn rebuilt(&mut self, pole: Pole) -> Option<Trellis> {
         let layers = &self.trellis.layers;
         if self.trellis.states.iter().any(|state| state.rewind.is_some()) {
             return None;
         }
         let placer = &self.settings[layers[0].setting].1;
-        let mut exact = Trellis::close_to_poles(self.machine, placer, Pole::Exact);
+        let mut rebuilt = Trellis::close_to_poles(self.machine, placer, pole);
         let begun = usize::from(self.anchored);
-        exact.layers.extend(layers[..begun].iter().cloned());
-        exact.states.extend(&self.trellis.states[..begun]);
+        rebuilt.layers.extend(layers[..begun].iter().cloned());
+        rebuilt.states.extend(&self.trellis.states[..begun]);
         for at in &layers[begun..] {
             let placer = &self.settings[at.setting].1;
             let (near, judge) = (&self.near, &mut self.judge);
-            exact.push(at.line, &at.motion, at.setting, placer, near, judge).ok()?;
-            if exact.layers.last()?.count == 0 {
+            rebuilt.push(at.line, &at.motion, at.setting, placer, near, judge).ok()?;
+            if rebuilt.layers.last()?.count == 0 {
                 return None;
             }
         }
-        exact.best().map(|_| exact)
+        rebuilt.best().map(|_| rebuilt)
     }
 
     fn hand_out(&mut self, way: &Backtrace, upto: usize) {

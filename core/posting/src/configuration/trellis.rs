@@ -122,10 +122,12 @@ impl CutEnd<'_> {
 
 /// How a state of a layer is come to.
 #[derive(Clone, Copy)]
-struct Arrival {
+struct Arrival<'n> {
     /// The state before; none: from nowhere.
     from: Option<usize>,
     kind: ArrivalKind,
+    /// Where the axes stand if it is from nowhere.
+    near: &'n Joints,
 }
 
 /// A cut from one of two states to another: does the machine come through, within tolerance?
@@ -137,6 +139,10 @@ pub(crate) trait CutChecker {
         from: CutEnd<'_>,
         to: CutEnd<'_>,
     ) -> bool;
+
+    /// What the way from `from` to `to` adds to the ways on which bodies hit one another; 0 where they are not weighed. The
+    /// first position is come to from where the tool is retracted.
+    fn hits(&mut self, placer: &Placer, kind: ArrivalKind, from: &Joints, to: &Joints) -> u32;
 }
 
 /// Time that the program asks for a move over `way` mm, minutes; a rapid has none.
@@ -249,7 +255,7 @@ impl Trellis {
             let range = before.clone().unwrap_or(0..0);
             match placer.solver().planar() {
                 true => self.go_on_in_plane(placer, motion, range, judge),
-                false => self.search_on(placer, &target, range),
+                false => self.search_on(placer, &target, range, judge),
             }
         }
         let found = if self.states.len() > first {
@@ -274,16 +280,17 @@ impl Trellis {
         }
         let range = before.unwrap_or(0..0);
         if on_pole {
-            self.hold(placer, &target, range.clone(), near, kind);
+            let arrival = Arrival { from: None, kind, near };
+            self.hold(placer, &target, range.clone(), arrival, judge);
         }
         if self.states.len() == first {
             match kind {
                 ArrivalKind::First => {
                     for stand in &stands {
-                        self.reach(placer, stand, None, near);
+                        self.reach(placer, stand, None, near, judge);
                     }
                 }
-                ArrivalKind::Rapid => self.turn(placer, &stands, range),
+                ArrivalKind::Rapid => self.turn(placer, &stands, range, judge),
                 ArrivalKind::Cut if placer.solver().closed_form() => {
                     let meet = ways.meet(&self.axes, found.latitude);
                     let passage = CutPassage { meet, arc: ways.arc };
@@ -411,24 +418,18 @@ impl Trellis {
         placer: &Placer,
         target: &Pose,
         before: std::ops::Range<usize>,
-        near: &Joints,
-        kind: ArrivalKind,
+        nowhere: Arrival<'_>,
+        judge: &mut dyn CutChecker,
     ) {
         let first = self.states.len();
         for quarter in [0.0, 1.0, -1.0, 2.0] {
-            if kind == ArrivalKind::First {
-                self.hold_from(placer, target, Arrival { from: None, kind }, near, quarter, first);
+            if nowhere.kind == ArrivalKind::First {
+                self.hold_from(placer, target, nowhere, quarter, first, judge);
             }
             for index in before.clone() {
                 if self.states[index].cost.is_way() {
-                    self.hold_from(
-                        placer,
-                        target,
-                        Arrival { from: Some(index), kind },
-                        near,
-                        quarter,
-                        first,
-                    );
+                    let arrival = Arrival { from: Some(index), ..nowhere };
+                    self.hold_from(placer, target, arrival, quarter, first, judge);
                 }
             }
             if self.states.len() > first {
@@ -441,12 +442,12 @@ impl Trellis {
         &mut self,
         placer: &Placer,
         target: &Pose,
-        arrival: Arrival,
-        near: &Joints,
+        arrival: Arrival<'_>,
         quarter: f64,
         first: usize,
+        judge: &mut dyn CutChecker,
     ) {
-        let Arrival { from, kind } = arrival;
+        let Arrival { from, kind, near } = arrival;
         let before = from.map(|index| self.states[index]);
         let mut last = before.map_or(*near, |state| state.joints);
         if let Some(pole) = placer.solver().pole_joint() {
@@ -470,10 +471,12 @@ impl Trellis {
             ),
             None => (PathCost::NONE, self.measure.approach(near, &stand.joints)),
         };
+        let stands = before.as_ref().map_or(near, |state| &state.joints);
+        let hits = judge.hits(placer, kind, stands, &stand.joints);
         self.keep(
             first,
             TrellisState {
-                cost: cost.and(way, self.measure.against(&stand.joints)),
+                cost: cost.and(way, self.measure.against(&stand.joints)).and_hits(hits),
                 joints: stand.joints,
                 from: from.unwrap_or(0),
                 root: before.map_or(0, |state| state.root),
@@ -484,7 +487,14 @@ impl Trellis {
     }
 
     /// Adds every set of turns of a solution, reached from one state or from nowhere.
-    fn reach(&mut self, placer: &Placer, stand: &AxisSolution, from: Option<usize>, near: &Joints) {
+    fn reach(
+        &mut self,
+        placer: &Placer,
+        stand: &AxisSolution,
+        from: Option<usize>,
+        near: &Joints,
+        judge: &mut dyn CutChecker,
+    ) {
         let chain = placer.solver().chain();
         let Self { axes, measure, states, .. } = self;
         let before = from.map(|index| states[index]);
@@ -494,8 +504,12 @@ impl Trellis {
                 Some(state) => (state.cost, measure.off_part(chain, &state.joints, joints)),
                 None => (PathCost::NONE, measure.approach(near, joints)),
             };
+            let hits = match &before {
+                Some(state) => judge.hits(placer, ArrivalKind::Rapid, &state.joints, joints),
+                None => judge.hits(placer, ArrivalKind::First, near, joints),
+            };
             states.push(TrellisState {
-                cost: cost.and(way, measure.against(joints)),
+                cost: cost.and(way, measure.against(joints)).and_hits(hits),
                 joints: *joints,
                 from: from.unwrap_or(0),
                 root: before.map_or(0, |state| state.root),
@@ -506,7 +520,13 @@ impl Trellis {
     }
 
     /// Connects every state with every other, off the part.
-    fn turn(&mut self, placer: &Placer, stands: &[AxisSolution], before: std::ops::Range<usize>) {
+    fn turn(
+        &mut self,
+        placer: &Placer,
+        stands: &[AxisSolution],
+        before: std::ops::Range<usize>,
+        judge: &mut dyn CutChecker,
+    ) {
         let first = self.states.len();
         let mut begun = false;
         for index in before {
@@ -516,7 +536,7 @@ impl Trellis {
             let near = self.states[index].joints;
             let from = self.states.len();
             for stand in stands {
-                self.reach(placer, stand, Some(index), &near);
+                self.reach(placer, stand, Some(index), &near, judge);
             }
             if !begun {
                 begun = true;
@@ -559,7 +579,7 @@ impl Trellis {
             }
             for stand in stands {
                 if state.branch == HELD {
-                    self.leave_pole(stand, index, first);
+                    self.leave_pole(placer, stand, index, first, judge);
                     continue;
                 }
                 let same = stand.branch == state.branch;
@@ -575,7 +595,8 @@ impl Trellis {
                     });
                 if sure && let Ok(mut joints) = carried {
                     if self.axes.stand_still(&state.joints, &mut joints) {
-                        self.states.push(self.after(index, joints, stand.branch));
+                        let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
+                        self.states.push(self.after(index, joints, stand.branch, hits));
                     }
                     continue;
                 }
@@ -594,7 +615,8 @@ impl Trellis {
                     .then_some(joints)
                 });
                 if let Some(joints) = found {
-                    let new = self.after(index, joints, stand.branch);
+                    let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
+                    let new = self.after(index, joints, stand.branch, hits);
                     self.keep(first, new);
                 }
             }
@@ -648,12 +670,13 @@ impl Trellis {
             .map_or(0.0, |last| 60.0 * minutes(motion, (motion.tip - last.motion.tip).norm()))
     }
 
-    /// The state that stands at `joints` and comes from another.
+    /// The state that stands at `joints` and comes from another by a cut that adds `hits`.
     #[inline]
-    fn after(&self, from: usize, joints: Joints, branch: u8) -> TrellisState {
+    fn after(&self, from: usize, joints: Joints, branch: u8, hits: u32) -> TrellisState {
         let state = &self.states[from];
+        let cost = state.cost.and(self.way_on(state, &joints), self.measure.against(&joints));
         TrellisState {
-            cost: state.cost.and(self.way_on(state, &joints), self.measure.against(&joints)),
+            cost: cost.and_hits(hits),
             joints,
             from,
             root: state.root,
@@ -664,7 +687,14 @@ impl Trellis {
 
     /// Connects a held pole joint with every solution: that joint is turned while it turns nothing, the others
     /// go on from where they are.
-    fn leave_pole(&mut self, stand: &AxisSolution, from: usize, first: usize) {
+    fn leave_pole(
+        &mut self,
+        placer: &Placer,
+        stand: &AxisSolution,
+        from: usize,
+        first: usize,
+        judge: &mut dyn CutChecker,
+    ) {
         let state = self.states[from];
         let mut reached = Vec::new();
         self.axes.unheld(stand, &state.joints, &mut |joints| reached.push(*joints));
@@ -672,14 +702,21 @@ impl Trellis {
             if !self.axes.stand_still(&state.joints, &mut joints) {
                 continue;
             }
-            let new = self.after(from, joints, stand.branch);
+            let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
+            let new = self.after(from, joints, stand.branch, hits);
             self.keep(first, new);
         }
     }
 
     /// Continues each state to the solution next to it, in a cut without a closed form. From states that differ by
     /// full turns that is the same but for these turns.
-    fn search_on(&mut self, placer: &Placer, target: &Pose, before: std::ops::Range<usize>) {
+    fn search_on(
+        &mut self,
+        placer: &Placer,
+        target: &Pose,
+        before: std::ops::Range<usize>,
+        judge: &mut dyn CutChecker,
+    ) {
         let first = self.states.len();
         let mut searched = std::mem::take(&mut self.searched);
         searched.clear();
@@ -707,7 +744,8 @@ impl Trellis {
             if !self.axes.stand_still(&state.joints, &mut joints) {
                 continue;
             }
-            let new = self.after(index, joints, state.branch);
+            let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
+            let new = self.after(index, joints, state.branch, hits);
             self.keep(first, new);
         }
         self.searched = searched;
@@ -748,7 +786,8 @@ impl Trellis {
                             CutEnd { pose: &target, joints: &joints },
                         ))
                 {
-                    let new = self.after(index, joints, next.branch);
+                    let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
+                    let new = self.after(index, joints, next.branch, hits);
                     self.keep(first, new);
                 }
             }

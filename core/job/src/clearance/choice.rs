@@ -1,0 +1,168 @@
+//! Bodies of the machine for the choice among solutions while a program is made.
+
+use std::collections::VecDeque;
+use std::f64::consts::TAU;
+
+use post_clearance::piece::Way;
+use post_clearance::proof::{Body, BodyKind, Move, Proof};
+use post_machine::description::{Machine, RapidAxes};
+use post_machine::diagnostic::{Diagnostic, Severity};
+use post_machine::kinematics::Joints;
+use post_motion::path::{Curve, Interpolation, Stance, turns};
+use post_posting::{BodyClearance, ClearTool, Contact, TrialWay, TrialWayKind};
+
+use super::bodies::{self, ToolShape, of_tool};
+use super::{proof, unknown_names};
+use crate::failure::Failure;
+
+/// Ways that are followed side by side: what is known of distances goes on along each.
+const MOST_TRACKS: usize = 6;
+
+/// Ways that are remembered: full turns of a rotary axis are nothing to bodies.
+const MOST_ASKED: usize = 64;
+
+/// A proof that goes on along one way.
+#[derive(Debug)]
+struct Track {
+    proof: Proof,
+    stands: Joints,
+    /// When it was last asked.
+    used: u64,
+}
+
+/// What was said of a way.
+#[derive(Debug)]
+struct Asked {
+    ends: [Joints; 2],
+    kind: TrialWayKind,
+    bodies: Option<[String; 2]>,
+}
+
+/// The bodies.
+#[derive(Debug)]
+pub(crate) struct ChoiceBodies<'a> {
+    machine: &'a Machine,
+    fixed: Vec<Body>,
+    tool: Vec<Body>,
+    tracks: Vec<Track>,
+    asked: VecDeque<Asked>,
+    count: u64,
+}
+
+impl<'a> ChoiceBodies<'a> {
+    /// Those of a machine whose file asks for the choice; none of another. Warnings go to `told`.
+    ///
+    /// # Errors
+    /// A body that cannot be had.
+    pub fn of(machine: &'a Machine, told: &mut Vec<Diagnostic>) -> Result<Option<Self>, Failure> {
+        if !machine.clearance.choose {
+            return Ok(None);
+        }
+        let mut findings = unknown_names(machine);
+        let fixed = bodies::of_machine(machine, &mut findings);
+        if findings.iter().any(|finding| finding.severity == Severity::Error) {
+            return Err(findings.into());
+        }
+        told.append(&mut findings);
+        let (tool, tracks, asked) = (Vec::new(), Vec::new(), VecDeque::new());
+        Ok(Some(Self { machine, fixed, tool, tracks, asked, count: 0 }))
+    }
+
+    /// The track that stands on `joints`; else another begins, in the place of the one that was asked longest ago.
+    fn track(&mut self, joints: &Joints) -> &mut Track {
+        self.count += 1;
+        let known = self.tracks.iter().position(|track| track.stands == *joints);
+        let place = known.unwrap_or_else(|| {
+            if self.tracks.len() < MOST_TRACKS {
+                let all = [self.fixed.as_slice(), &self.tool].concat();
+                let proof = proof(self.machine, all);
+                self.tracks.push(Track { proof, stands: *joints, used: 0 });
+                return self.tracks.len() - 1;
+            }
+            let oldest = self.tracks.iter().enumerate().min_by_key(|(_, track)| track.used);
+            oldest.map_or(0, |(place, _)| place)
+        });
+        let track = &mut self.tracks[place];
+        track.used = self.count;
+        track
+    }
+
+    /// Bodies that are not proven to be clear of one another on a way.
+    fn prove(&mut self, way: &TrialWay<'_>, ends: [Joints; 2]) -> Option<[String; 2]> {
+        let chain = way.solver.chain();
+        let stances = ends.map(|joints| Stance { joints, pose: chain.forward(&joints) });
+        let [from, to] = &stances;
+        // Where axes turn the tip goes straight: by points that are put in, or because the control keeps it.
+        let straight = way.kind != TrialWayKind::Turn && turns(chain, [from, to]);
+        let interpolation = match straight {
+            true => Interpolation::Tip(Curve::Straight),
+            false => Interpolation::Axes,
+        };
+        let rapid = way.kind != TrialWayKind::Cut;
+        let together = self.machine.clearance.rapid_axes == RapidAxes::Together;
+        let independent = rapid && !straight && !together;
+        let way_of = Way {
+            solver: way.solver,
+            interpolation: &interpolation,
+            ends: [from, to],
+            independent,
+        };
+        // Where the tip goes in the part is the same whatever solution is taken.
+        let looks = |one: &Body, other: &Body| {
+            let kinds = [one.kind, other.kind];
+            !(kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock))
+        };
+        let track = self.track(&ends[0]);
+        track.stands = ends[1];
+        let before: Vec<u64> = track.proof.results().map(|result| result.faults).collect();
+        track.proof.take(&Move { way: way_of, rapid, line: 0 }, looks);
+        let mut results = track.proof.results().zip(before);
+        let (hit, _) = results.find(|(result, before)| result.faults > *before)?;
+        Some(hit.bodies.map(|place| track.proof.bodies()[place].name.clone()))
+    }
+}
+
+impl BodyClearance for ChoiceBodies<'_> {
+    fn equip(&mut self, tool: Option<&ClearTool>) {
+        self.tracks.clear();
+        self.asked.clear();
+        self.tool.clear();
+        let Some((tool, length)) = tool.and_then(|tool| Some((tool, tool.length?))) else {
+            return;
+        };
+        let machine = self.machine;
+        let number = tool.number;
+        let listed = machine.tool_table.as_ref();
+        let listed = listed.and_then(|table| table.entry(number, number)?.diameter());
+        let shape = ToolShape {
+            number,
+            length,
+            outline: machine.outlines.iter().find(|outline| outline.number == number),
+            radius: listed.or(tool.diameter).filter(|size| *size > 0.0).map(|size| 0.5 * size),
+        };
+        self.tool = of_tool(machine, &shape, &mut Vec::new());
+    }
+
+    fn contact(&mut self, way: &TrialWay<'_>) -> Option<Contact> {
+        let mut ends = way.ends.map(|joints| *joints);
+        for (place, axis) in self.machine.axes.iter().enumerate() {
+            if axis.joint.rotary {
+                let turns = TAU * libm::rint(ends[0][place] / TAU);
+                ends.iter_mut().for_each(|joints| joints[place] -= turns);
+            }
+        }
+        let known = self.asked.iter().find(|asked| (asked.ends, asked.kind) == (ends, way.kind));
+        let bodies = match known {
+            Some(known) => known.bodies.clone(),
+            None => {
+                let bodies = self.prove(way, ends);
+                if self.asked.len() == MOST_ASKED {
+                    self.asked.pop_front();
+                }
+                self.asked.push_back(Asked { ends, kind: way.kind, bodies: bodies.clone() });
+                bodies
+            }
+        };
+        bodies.map(|bodies| Contact { bodies, joints: *way.ends[1] })
+    }
+}

@@ -1,0 +1,278 @@
+//! Bodies of the machine in the choice among solutions.
+//!
+//! The cheapest way through the trellis is held against the bodies when it is settled. Only where it hits something every way
+//! through the trellis is, each step of it that hits counts before all else that it costs, and the cheapest is looked for
+//! again. So a path that hits nothing is chosen as if there were no bodies, and where nothing helps the fewest hits are taken.
+//!
+//! What is looked at is the way between CL points; where the tool comes from the retract, how the axes turn there and the way
+//! straight down; and the way straight up. Nothing is proven by it: the program is, as it is written.
+
+use std::fmt::Debug;
+
+use post_machine::axis_words;
+use post_machine::description::{Machine, Pole};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::{Joints, Solver};
+
+use super::backtrace::Backtrace;
+use super::route::Route;
+use super::trellis::{ArrivalKind, Trellis};
+use crate::accuracy::Placer;
+
+/// Points that wait at most to be decided: a pass is one choice.
+const LONGEST_PASS: usize = 20_000;
+
+/// A tool whose axis is off the depth axis by no more leans not, as a cosine less than 1.
+const UPRIGHT: f64 = 1e-6;
+
+/// How the axes go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrialWayKind {
+    /// At feed, the tip straight.
+    Cut,
+    /// At rapid, the tip straight.
+    Rapid,
+    /// At rapid, as far as each axis goes: the rotary ones while the tool is retracted.
+    Turn,
+}
+
+/// A way of the axes.
+#[derive(Clone, Copy, Debug)]
+pub struct TrialWay<'a> {
+    /// The machine with its tool.
+    pub solver: &'a Solver,
+    /// Axis values where it begins and ends, mm and radians.
+    pub ends: [&'a Joints; 2],
+    /// How they go.
+    pub kind: TrialWayKind,
+}
+
+/// Two bodies that are not clear of one another.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Their names.
+    pub bodies: [String; 2],
+    /// Axis values at the end of the way that leads there, mm and radians.
+    pub joints: Joints,
+}
+
+/// A tool as a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClearTool {
+    /// Its number.
+    pub number: u32,
+    /// From the gauge point to the tip, mm, if it is known.
+    pub length: Option<f64>,
+    /// Diameter of its cutter as the CL file has it, mm.
+    pub diameter: Option<f64>,
+}
+
+/// Says on which ways bodies of a machine stay clear of one another.
+pub trait BodyClearance: Debug {
+    /// Another tool is in the spindle; none: it is not known.
+    fn equip(&mut self, tool: Option<&ClearTool>);
+
+    /// Bodies that are not clear of one another on a way; none: all are.
+    fn contact(&mut self, way: &TrialWay<'_>) -> Option<Contact>;
+}
+
+/// Holds ways of the route against bodies.
+#[derive(Debug)]
+pub(crate) struct BodyTrial<'a> {
+    bodies: &'a mut dyn BodyClearance,
+}
+
+/// Where a way hits something: line of the CL file, and what.
+#[derive(Debug)]
+pub(super) struct Hit {
+    line: u64,
+    contact: Contact,
+}
+
+impl BodyTrial<'_> {
+    pub(super) fn equip(&mut self, tool: Option<&ClearTool>) {
+        self.bodies.equip(tool);
+    }
+
+    /// What the way from `from` to `to` hits.
+    pub(super) fn arrives(
+        &mut self,
+        machine: &Machine,
+        placer: &Placer,
+        kind: ArrivalKind,
+        from: &Joints,
+        to: &Joints,
+    ) -> Option<Contact> {
+        let solver = placer.solver();
+        let kind = match kind {
+            ArrivalKind::First => return self.comes_down(machine, solver, from, to),
+            ArrivalKind::Rapid => TrialWayKind::Rapid,
+            ArrivalKind::Cut => TrialWayKind::Cut,
+        };
+        self.bodies.contact(&TrialWay { solver, ends: [from, to], kind })
+    }
+
+    /// What is hit while the axes turn where the tool is retracted, from how they stand at `from`, or on the way down to `to`.
+    fn comes_down(
+        &mut self,
+        machine: &Machine,
+        solver: &Solver,
+        from: &Joints,
+        to: &Joints,
+    ) -> Option<Contact> {
+        let mut stands = *from;
+        for (joint, value) in &machine.frame.retract {
+            stands[*joint] = *value;
+        }
+        let mut turned = stands;
+        for (place, axis) in machine.axes.iter().enumerate() {
+            if axis.joint.rotary {
+                turned[place] = to[place];
+            }
+        }
+        let turn = TrialWay { solver, ends: [&stands, &turned], kind: TrialWayKind::Turn };
+        let above = retracted(machine, solver, to);
+        let down = TrialWay { solver, ends: [&above, to], kind: TrialWayKind::Rapid };
+        self.bodies.contact(&turn).or_else(|| self.bodies.contact(&down))
+    }
+
+    /// What the way from `from` to the retract hits.
+    fn departs(&mut self, machine: &Machine, solver: &Solver, from: &Joints) -> Option<Contact> {
+        let above = retracted(machine, solver, from);
+        self.bodies.contact(&TrialWay { solver, ends: [from, &above], kind: TrialWayKind::Rapid })
+    }
+}
+
+/// Where the axes stand when the tool is drawn up from `joints` to the retract: there, where it leans or leaves along its own
+/// axis, for it goes another way then.
+fn retracted(machine: &Machine, solver: &Solver, joints: &Joints) -> Joints {
+    let mut above = *joints;
+    let Some(depth) = axis_words::depth(machine) else {
+        return above;
+    };
+    let chain = solver.chain();
+    let along = chain.way_of(depth, joints).dot(&chain.forward(joints).axis);
+    if machine.frame.leave.is_none() && libm::fabs(along) > 1.0 - UPRIGHT {
+        for (joint, value) in &machine.frame.retract {
+            above[*joint] = *value;
+        }
+    }
+    above
+}
+
+impl<'a> Route<'a> {
+    /// Ways are held against bodies from here on.
+    pub(super) fn keep_clear_of(&mut self, bodies: &'a mut dyn BodyClearance) {
+        self.judge.bodies = Some(BodyTrial { bodies });
+    }
+
+    /// Points that wait at most before some are settled.
+    #[inline]
+    pub(super) fn look_ahead(&self) -> usize {
+        let look_ahead = self.machine.solution.look_ahead;
+        match self.judge.bodies {
+            None => look_ahead,
+            Some(_) => look_ahead.max(LONGEST_PASS),
+        }
+    }
+
+    /// The first hit of the way that is to be settled.
+    pub(super) fn first_hit(&mut self, way: &Backtrace) -> Option<Hit> {
+        let Self { trellis, settings, machine, judge, rewound, anchored, departs, near, .. } = self;
+        let bodies = judge.bodies.as_mut()?;
+        let count = trellis.layers.len();
+        for layer in usize::from(*anchored)..count {
+            let at = &trellis.layers[layer];
+            let from = layer.checked_sub(1).map_or(*near, |before| way.joints(trellis, before));
+            let to = match trellis.states[way.states[layer]].rewind {
+                Some(before) => rewound[before],
+                None => way.joints(trellis, layer),
+            };
+            let placer = &settings[at.setting].1;
+            let found = bodies.arrives(machine, placer, at.kind, &from, &to);
+            if let Some(contact) = found {
+                return Some(Hit { line: at.line, contact });
+            }
+        }
+        let last = trellis.layers.last().filter(|_| *departs)?;
+        let joints = way.joints(trellis, count - 1);
+        let contact = bodies.departs(machine, settings[last.setting].1.solver(), &joints)?;
+        Some(Hit { line: last.line, contact })
+    }
+
+    /// Looks for the way with the fewest hits in the place of one that has `hit`; gives the state that it ends in, which was
+    /// `best` before.
+    pub(super) fn keep_clear(&mut self, way: &mut Backtrace, best: usize, hit: Hit) -> usize {
+        let poles = [self.machine.solution.pole, Pole::Exact];
+        let mut ends = best;
+        for pole in poles {
+            self.judge.weighs = true;
+            let found = self.rebuilt(pole);
+            self.judge.weighs = false;
+            let Some(mut found) = found else {
+                break;
+            };
+            self.weigh_departures(&mut found);
+            self.trellis.layers = found.layers;
+            self.trellis.states = found.states;
+            ends = self.walk_back(way).unwrap_or(ends);
+            if pole == Pole::Exact {
+                break;
+            }
+            self.ease(way);
+            if self.comes_through(way, 1..self.trellis.layers.len()) {
+                break;
+            }
+        }
+        let (line, told) = match self.first_hit(way) {
+            Some(left) => (left.line, hits_however(self.machine, &left.contact)),
+            None => (hit.line, chosen_clear(self.machine, &hit.contact)),
+        };
+        self.told.push((line, told));
+        ends
+    }
+
+    /// Adds what the ways from the last point to the retract hit.
+    fn weigh_departures(&mut self, trellis: &mut Trellis) {
+        let (Some(bodies), Some(last)) = (&mut self.judge.bodies, trellis.layers.last()) else {
+            return;
+        };
+        if !self.departs {
+            return;
+        }
+        let solver = self.settings[last.setting].1.solver();
+        for state in &mut trellis.states[last.first..last.first + last.count] {
+            let hits = bodies.departs(self.machine, solver, &state.joints).is_some();
+            state.cost = state.cost.and_hits(u32::from(hits));
+        }
+    }
+}
+
+/// The place of the axes, as the control shows them.
+fn shown(machine: &Machine, joints: &Joints) -> String {
+    let stands = machine.axes.iter().zip(joints);
+    let stands = stands.map(|(axis, value)| format!("{} {:.3}", axis.name, axis.reading(*value)));
+    stands.collect::<Vec<_>>().join(" ")
+}
+
+/// The cheapest solutions would hit something, and others were found.
+fn chosen_clear(machine: &Machine, contact: &Contact) -> Diagnostic {
+    let [one, other] = &contact.bodies;
+    let message = format!(
+        "with the cheapest solutions {one} would not stay clear of {other} (at {}): others are taken",
+        shown(machine, &contact.joints)
+    );
+    Diagnostic::warning("clearance", message)
+        .help("[clearance] choose has it so; another fixture or mount may be quicker")
+}
+
+/// Whatever solutions are taken, something hits.
+fn hits_however(machine: &Machine, contact: &Contact) -> Diagnostic {
+    let [one, other] = &contact.bodies;
+    let message = format!(
+        "no solution was found with which {one} stays clear of {other} (at {})",
+        shown(machine, &contact.joints)
+    );
+    Diagnostic::warning("clearance", message)
+        .help("another mount, fixture, tool or path; `post clearance` proves the program")
+}

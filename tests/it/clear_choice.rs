@@ -1,0 +1,111 @@
+//! `[clearance] choose`: the cut that hits something with one solution is made with the other, and is said to be.
+
+use std::fs;
+
+use post_testkit::assert_contains;
+use tempfile::TempDir;
+
+use crate::common::post_in;
+
+/// A table with a round plate, a tool setter that stands in front of it, and a tool.
+const MACHINE: &str = "extends = \"ac-trunnion\"
+name = \"with a setter\"
+[fixture.plate]
+cylinder = [[0, 0, 0], [0, 0, 20]]
+radius = 140
+[fixture.setter]
+block = [[-30, -200, -60], [30, -146, 90]]
+on = \"b\"
+[fixture.head]
+cylinder = [[0, 0, 402], [0, 0, 520]]
+radius = 60
+on = \"t\"
+[tools.3]
+length = 100
+holder = [[0, 32], [20, 32], [20, 20], [60, 18]]
+cutter = [[0, 5], [40, 5]]
+[clearance]
+keep = 1
+rapid_axes = \"together\"
+";
+
+/// A facet that leans by `lean` degrees to the side of Y that `sign` has.
+fn facet(lean: f64, sign: f64) -> String {
+    let (sine, cosine) = (lean.to_radians().sin() * sign, lean.to_radians().cos());
+    let at = |x: f64, out: f64| {
+        let (y, z) = (20.0 * sign + out * sine, 52.0 + out * cosine);
+        format!("GOTO/{x:.4},{y:.4},{z:.4},0,{sine:.7},{cosine:.7}\n")
+    };
+    let moves = [
+        "RAPID\n".to_owned() + &at(-60.0, 60.0),
+        "RAPID\n".to_owned() + &at(-60.0, 0.0),
+        "FEDRAT/MMPM,800\n".to_owned() + &at(60.0, 0.0),
+        "RAPID\n".to_owned() + &at(60.0, 60.0),
+    ];
+    moves.concat()
+}
+
+fn job(machine: &str, moves: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let tool = "TLDATA/MILL,10,0,100,0,0\nLOAD/TOOL,3\nSPINDL/RPM,6000,CLW\n";
+    fs::write(folder.path().join("setter.toml"), machine).unwrap();
+    fs::write(folder.path().join("facet.cls"), format!("{tool}{moves}END-OF-PATH\n")).unwrap();
+    folder
+}
+
+/// The program and what is said while it is made, and what is said of its clearance if it is not clear.
+fn made(folder: &TempDir, more: &[&str]) -> (String, String, Option<String>) {
+    let words = ["-m", "setter.toml", "facet.cls", "-o", "facet.nc", "-q"];
+    let run = post_in(folder.path(), &[&words, more].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let program = fs::read_to_string(folder.path().join("facet.nc")).unwrap();
+    let proof = post_in(folder.path(), &["clearance", "facet.nc", "-m", "setter.toml"]);
+    assert!(proof.code < 2, "{}", proof.err);
+    (program, run.err, (proof.code != 0).then_some(proof.err))
+}
+
+const CHOOSE: [&str; 2] = ["--set", "clearance.choose=true"];
+
+#[test]
+fn a_cut_that_hits_with_one_solution_is_made_with_the_other() {
+    let folder = job(MACHINE, &facet(20.0, -1.0));
+    let (program, _, hits) = made(&folder, &[]);
+    assert_contains(&program, &["G0 A20.000 C0.000"]);
+    assert_contains(&hits.unwrap(), &["plate hits setter"]);
+    let (program, said, hits) = made(&folder, &CHOOSE);
+    assert_eq!(hits, None);
+    assert_contains(&program, &["G0 A-20.000 C180.000"]);
+    assert_contains(
+        &said,
+        &["with the cheapest solutions plate would not stay clear of setter", "facet.cls:5"],
+    );
+}
+
+/// Two facets that lean to either side: each is cut with the solution that is clear, the axes turned between them.
+#[test]
+fn each_pass_is_chosen_by_itself() {
+    let folder = job(MACHINE, &(facet(20.0, 1.0) + &facet(20.0, -1.0)));
+    let (_, _, hits) = made(&folder, &[]);
+    assert!(hits.is_some());
+    let (program, _, hits) = made(&folder, &CHOOSE);
+    assert_eq!(hits, None, "{program}");
+}
+
+#[test]
+fn what_hits_nothing_is_chosen_as_without_bodies() {
+    let folder = job(MACHINE, &(facet(20.0, 1.0) + &facet(5.0, 1.0)));
+    let (program, _, hits) = made(&folder, &[]);
+    assert_eq!(hits, None);
+    let (other, said, _) = made(&folder, &CHOOSE);
+    assert_eq!(program, other);
+    assert_eq!(said, "");
+}
+
+#[test]
+fn where_every_solution_hits_that_is_said() {
+    let behind = "[fixture.wall]\nblock = [[-30, 146, -60], [30, 200, 90]]\non = \"b\"\n";
+    let folder = job(&format!("{MACHINE}{behind}"), &facet(20.0, -1.0));
+    let (_, said, hits) = made(&folder, &CHOOSE);
+    assert!(hits.is_some());
+    assert_contains(&said, &["no solution was found with which plate stays clear of"]);
+}

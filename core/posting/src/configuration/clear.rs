@@ -12,11 +12,11 @@ use std::fmt::Debug;
 use post_machine::axis_words;
 use post_machine::description::{Machine, Pole};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::{Joints, Solver};
+use post_machine::kinematics::{Joints, Pose, Solver};
 
 use super::backtrace::Backtrace;
 use super::route::Route;
-use super::trellis::{ArrivalKind, Trellis};
+use super::trellis::{ArrivalKind, CutChecker, Trellis, TrellisLayer};
 use crate::accuracy::Placer;
 
 /// Points that wait at most to be decided: a pass is one choice.
@@ -207,14 +207,12 @@ impl<'a> Route<'a> {
         let mut ends = best;
         for pole in poles {
             self.judge.weighs = true;
-            let found = self.rebuilt(pole);
+            let rebuilt = self.rebuild(pole);
             self.judge.weighs = false;
-            let Some(mut found) = found else {
+            if !rebuilt {
                 break;
-            };
-            self.weigh_departures(&mut found);
-            self.trellis.layers = found.layers;
-            self.trellis.states = found.states;
+            }
+            self.weigh_departures();
             ends = self.walk_back(way).unwrap_or(ends);
             if pole == Pole::Exact {
                 break;
@@ -232,8 +230,36 @@ impl<'a> Route<'a> {
         ends
     }
 
+    /// Takes the next point of a trellis that is made anew; false where no way leads there. Where every way of a cut begins to
+    /// hit something there (`hitting` from then on) the tool may be drawn back before, and turned.
+    pub(super) fn goes_through(&mut self, at: &TrellisLayer, hitting: &mut bool) -> bool {
+        let before = self.trellis.fewest_hits();
+        if !self.goes_on(at.line, &at.motion) {
+            return false;
+        }
+        let hits = self.trellis.fewest_hits() > before && at.kind == ArrivalKind::Cut;
+        let began = std::mem::replace(hitting, hits);
+        if !hits || began || !self.judge.weighs {
+            return true;
+        }
+        self.trellis.pop();
+        self.try_rewind(at.line, &at.motion) || self.goes_on(at.line, &at.motion)
+    }
+
+    /// What drawing the tool back to `back`, turning it and bringing it back adds to the ways that hit something.
+    pub(super) fn rewind_hits(&mut self, placer: &Placer, back: &Pose, ends: [&Joints; 2]) -> u32 {
+        let away = ends.map(|joints| placer.settled(*back, 1.0, joints).map(|at| at.trace.joints));
+        let [Ok(away), Ok(turned)] = away else {
+            return 0;
+        };
+        let ways = [[ends[0], &away], [&away, &turned], [&turned, ends[1]]];
+        let judge = &mut self.judge;
+        ways.into_iter().map(|[from, to]| judge.hits(placer, ArrivalKind::Rapid, from, to)).sum()
+    }
+
     /// Adds what the ways from the last point to the retract hit.
-    fn weigh_departures(&mut self, trellis: &mut Trellis) {
+    fn weigh_departures(&mut self) {
+        let trellis = &mut self.trellis;
         let (Some(bodies), Some(last)) = (&mut self.judge.bodies, trellis.layers.last()) else {
             return;
         };
@@ -245,6 +271,16 @@ impl<'a> Route<'a> {
             let hits = bodies.departs(self.machine, solver, &state.joints).is_some();
             state.cost = state.cost.and_hits(u32::from(hits));
         }
+    }
+}
+
+impl Trellis {
+    /// The fewest ways that hit something to come to the newest layer.
+    fn fewest_hits(&self) -> u32 {
+        let layer = self.layers.last().map(|layer| layer.first..layer.first + layer.count);
+        let states = layer.map(|states| &self.states[states]).unwrap_or_default();
+        let ways = states.iter().filter(|state| state.cost.is_way());
+        ways.map(|state| state.cost.hits()).min().unwrap_or_default()
     }
 }
 

@@ -35,6 +35,11 @@ impl PathCost {
         Self { hits: self.hits + hits, ..self }
     }
 
+    /// Ways that hit something.
+    pub(crate) fn hits(&self) -> u32 {
+        self.hits
+    }
+
     /// Goes on by a rewind.
     pub(crate) fn and_rewind(self, travel: f64) -> Self {
         Self { rewinds: self.rewinds + 1, ..self.and(travel, 0) }

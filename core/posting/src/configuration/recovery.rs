@@ -54,7 +54,7 @@ impl Route<'_> {
     }
 
     /// Pushes a point if there is a way to stand at it.
-    fn goes_on(&mut self, line: u64, motion: &StraightMove) -> bool {
+    pub(super) fn goes_on(&mut self, line: u64, motion: &StraightMove) -> bool {
         let pushed = self.push(line, motion).is_ok();
         if pushed && !self.alive() {
             self.trellis.pop();
@@ -159,7 +159,7 @@ impl Route<'_> {
     }
 
     /// Adds to the point before the states that a rewind there can reach, and pushes the point again.
-    fn try_rewind(&mut self, line: u64, motion: &StraightMove) -> bool {
+    pub(super) fn try_rewind(&mut self, line: u64, motion: &StraightMove) -> bool {
         let Some(rewind) = self.machine.rewind else {
             return false;
         };
@@ -200,14 +200,13 @@ impl Route<'_> {
                 continue;
             }
             let state = &states[place];
+            let hits = self.rewind_hits(&placer, &pose(&back), [&state.joints, &joints]);
+            let chain = placer.solver().chain();
+            let turn = self.trellis.measure.off_part(chain, &state.joints, &joints);
             self.rewound.push(state.joints);
             let index = self.trellis.states.len();
             self.trellis.states.push(TrellisState {
-                cost: state.cost.and_rewind(self.trellis.measure.off_part(
-                    placer.solver().chain(),
-                    &state.joints,
-                    &joints,
-                )),
+                cost: state.cost.and_rewind(turn).and_hits(hits),
                 joints,
                 from: state.from,
                 root: if self.mark + 1 == self.trellis.layers.len() { index } else { state.root },

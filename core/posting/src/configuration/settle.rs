@@ -94,11 +94,7 @@ impl Route<'_> {
         };
         self.ease(&mut way);
         let mut upto = upto;
-        if !self.comes_through(&way, 1..count)
-            && let Some(exact) = self.rebuilt(Pole::Exact)
-        {
-            self.trellis.layers = exact.layers;
-            self.trellis.states = exact.states;
+        if !self.comes_through(&way, 1..count) && self.rebuild(Pole::Exact) {
             best = self.walk_back(&mut way).unwrap_or(best);
             // What lies after the newest point came from the way that is not taken.
             upto = count - 1;
@@ -127,27 +123,31 @@ impl Route<'_> {
         Some(best)
     }
 
-    /// The trellis of the points that wait, with poles met in this way; none where no way leads through it, or where the
-    /// tool is drawn back on the way.
-    pub(super) fn rebuilt(&mut self, pole: Pole) -> Option<Trellis> {
+    /// Makes the trellis of the points that wait anew, with poles met in this way. It stays as it was, and false is said, where
+    /// no way leads through it, or where the tool is drawn back on the way.
+    pub(super) fn rebuild(&mut self, pole: Pole) -> bool {
         let layers = &self.trellis.layers;
         if self.trellis.states.iter().any(|state| state.rewind.is_some()) {
-            return None;
+            return false;
         }
         let placer = &self.settings[layers[0].setting].1;
-        let mut rebuilt = Trellis::close_to_poles(self.machine, placer, pole);
+        let mut anew = Trellis::close_to_poles(self.machine, placer, pole);
         let begun = usize::from(self.anchored);
-        rebuilt.layers.extend(layers[..begun].iter().cloned());
-        rebuilt.states.extend(&self.trellis.states[..begun]);
-        for at in &layers[begun..] {
-            let placer = &self.settings[at.setting].1;
-            let (near, judge) = (&self.near, &mut self.judge);
-            rebuilt.push(at.line, &at.motion, at.setting, placer, near, judge).ok()?;
-            if rebuilt.layers.last()?.count == 0 {
-                return None;
-            }
+        anew.layers.extend(layers[..begun].iter().cloned());
+        anew.states.extend(&self.trellis.states[..begun]);
+        let before = std::mem::replace(&mut self.trellis, anew);
+        let setting = self.setting;
+        let mut hitting = false;
+        let through = before.layers[begun..].iter().all(|at| {
+            self.setting = at.setting;
+            self.goes_through(at, &mut hitting)
+        });
+        self.setting = setting;
+        let through = through && self.trellis.best().is_some();
+        if !through {
+            self.trellis = before;
         }
-        rebuilt.best().map(|_| rebuilt)
+        through
     }
 
     fn hand_out(&mut self, way: &Backtrace, upto: usize) {

@@ -12,7 +12,7 @@ use post_motion::path::{Curve, Interpolation, Stance, turns};
 use post_posting::{BodyClearance, ClearTool, Contact, TrialWay, TrialWayKind};
 
 use super::bodies::{self, ToolShape, of_tool};
-use super::{proof, unknown_names};
+use super::{names, proof};
 use crate::failure::Failure;
 
 /// Ways that are followed side by side: what is known of distances goes on along each.
@@ -58,7 +58,7 @@ impl<'a> ChoiceBodies<'a> {
         if !machine.clearance.choose {
             return Ok(None);
         }
-        let mut findings = unknown_names(machine);
+        let mut findings = names::unknown(machine);
         let fixed = bodies::of_machine(machine, &mut findings);
         if findings.iter().any(|finding| finding.severity == Severity::Error) {
             return Err(findings.into());

@@ -93,6 +93,35 @@ fn a_tool_that_is_changed_in_the_cut_was_not_there_before() {
     }
 }
 
+/// Led by the register of another tool the tool is as long as it is, and that is said.
+#[test]
+fn a_tool_is_as_long_as_it_is_whatever_register_leads_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "extends = \"vmc\"\nname = \"v\"\n[workpiece]\nmount = [0, 0, -100]\n\
+        [fixture.f]\nblock = [[-100, -100, -150], [100, 100, -110]]\n\
+        [tools.1]\nlength = 100\ncutter = [[0, 5], [60, 5]]\n\
+        [tools.2]\nlength = 150\ncutter = [[0, 5], [60, 5]]\n";
+    fs::write(folder.path().join("v.toml"), machine).unwrap();
+    for (register, said) in [
+        ("H2", None),
+        (
+            "H1",
+            Some(["f hits cutter T2", "tool 2 is 150 mm long, and the length in force is 100 mm"]),
+        ),
+    ] {
+        let program = format!(
+            "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT2 M6\nS1000 M3\nG54\nG0 X0. Y0.\nG43 {register} Z50.\n\
+             G1 Z10. F500.\nG0 Z80.\nG49\nG53 G0 Z20.\nM30\n%\n"
+        );
+        fs::write(folder.path().join("p.nc"), program).unwrap();
+        let run = post_in(folder.path(), &["clearance", "p.nc", "-m", "v.toml"]);
+        match said {
+            None => assert_eq!(run.code, 0, "{}", run.err),
+            Some(said) => assert_contains(&run.err, &said),
+        }
+    }
+}
+
 #[test]
 fn pairs_that_are_left_out_are_left_out_and_names_must_be_of_something() {
     let fixture = "[fixture.post]\nblock = [[-10, -10, 0], [10, 10, 60]]\n[clearance]\n";

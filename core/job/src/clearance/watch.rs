@@ -11,9 +11,13 @@ use post_readback::{BlockEffect, Interpolation, Motion, MotionKind, ProgramEvent
 use super::bodies::{ToolShape, of_tool};
 use super::{ClearanceFound, proof};
 use crate::nc_program::NcControl;
+use crate::text::number as number_text;
 
 /// A tip that leaves the tool axis by less than this goes along it, mm.
 const ALONG: f64 = 1e-3;
+
+/// A length in force may differ by so much from that of the tool, mm: wear, and what a measurement leaves.
+const WEAR: f64 = 0.5;
 
 /// What is known of a pair of bodies along the program.
 #[derive(Clone, Debug)]
@@ -47,6 +51,8 @@ pub(super) struct ClearanceWatch<'a, 'h> {
     came: bool,
     /// It was said that the spindle turns the part.
     turns_part: bool,
+    /// The tool of which it was said that another length leads it.
+    misled: Option<u32>,
     rows: BTreeMap<[String; 2], PairRow>,
     /// Who hears how near the nearest two bodies come on each line, mm, and how that is found.
     told: Option<(&'a mut Hearer<'h>, Proof)>,
@@ -80,6 +86,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             widens: true,
             came: false,
             turns_part: false,
+            misled: None,
             rows: BTreeMap::new(),
             found,
             faults: Vec::new(),
@@ -114,6 +121,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             let message = "the spindle turns the part: what is clamped is looked at as it stands, and nothing is proven of how it turns".to_owned();
             self.faults.push((motion.line, message, "programs that turn are looked at by eye; mill what turns with a machine file of its own"));
         }
+        self.hold_lengths(motion);
         let at_rapid = motion.kind == MotionKind::Rapid;
         let rapid = at_rapid || motion.fast;
         let together = self.control.machine.clearance.rapid_axes == RapidAxes::Together;
@@ -144,6 +152,27 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
     }
 
+    /// Says where a cut is led by another length than the tool has.
+    fn hold_lengths(&mut self, motion: &Motion) {
+        let stated = motion.state.length;
+        if let Some((number, Some(length))) = self.tool
+            && motion.kind != MotionKind::Rapid
+            && stated > 0.0
+            && libm::fabs(length - stated) > WEAR
+            && self.misled != Some(number)
+        {
+            self.misled = Some(number);
+            let message = format!(
+                "tool {number} is {} mm long, and the length in force is {} mm: the control leads another tool",
+                number_text(length, 3),
+                number_text(stated, 3)
+            );
+            let help =
+                "call the length register of this tool (H, D), or correct [tools] and --offsets";
+            self.faults.push((motion.line, message, help));
+        }
+    }
+
     /// Another tool, or another length of it: what is known of the pairs is put down, and the proof begins again with its
     /// bodies.
     fn change_tool(&mut self, motion: &Motion) {
@@ -155,10 +184,11 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             }
             return;
         };
+        // A register says where the control leads the tool, not how long it is.
         let stated = Some(motion.state.length).filter(|length| *length > 0.0);
         let same = self.tool.filter(|(known, _)| *known == number);
-        let length = stated.or_else(|| same.and_then(|(_, length)| length));
-        let length = length.or_else(|| self.length_of(number));
+        let length = self.length_of(number).or(stated);
+        let length = length.or_else(|| same.and_then(|(_, length)| length));
         if same.is_some_and(|(_, known)| known == length) {
             return;
         }

@@ -1,5 +1,6 @@
 """Jobs: the same bytes as the command's."""
 
+import json
 import os
 import pickle
 import signal
@@ -340,3 +341,32 @@ def test_a_job_file_makes_the_programs_of_the_command(room: Path, command: Comma
     with pytest.raises(post.PostError) as refused:
         post.job(path)
     assert refused.value.diagnostics[0].code == "job-file"
+
+
+def test_clearance_is_that_of_the_command(tmp_path: Path, command: Command) -> None:
+    """Nothing hits anything, pair by pair; and where something does, that is why."""
+    machine = tmp_path / "vise.toml"
+    text = """extends = "ac-trunnion"
+name = "with a jaw"
+[stock]
+block = [[-50, -30, 0], [50, 30, 28]]
+[tools.3]
+length = 100
+holder = [[0, 32], [20, 32], [20, 20], [60, 18]]
+cutter = [[0, 5], [40, 5]]
+[fixture.jaw]
+block = [[60, -60, 0], [90, 60, 40]]
+"""
+    machine.write_text(text)
+    blade = CHECKOUT / "tests/samples/blade.cls"
+    job = post.Machine.load(machine).post(blade)
+    pairs = job.clearance().summary["pairs"]
+    summary = tmp_path / "s.json"
+    done = command("-q", "-m", str(machine), str(blade), "-o", str(tmp_path / "b.nc"), "--clearance", "--summary", str(summary))
+    assert done.returncode == 0, done.stderr
+    assert pairs == json.loads(summary.read_text())["clearance"]["pairs"]
+    assert {"jaw", "holder T3"} in [set(pair["bodies"]) for pair in pairs]
+    with pytest.raises(post.PostError) as refused:
+        post.Machine.load(machine, set={"clearance.keep": 5}).post(blade).clearance()
+    assert [why.code for why in refused.value.diagnostics] == ["clearance"]
+    assert "jaw comes within" in refused.value.diagnostics[0].message

@@ -167,12 +167,13 @@ fn a_pair_keeps_a_distance_of_its_own() {
     describe(
         &folder,
         &format!(
-            "{fixture}keep = 25\npairs = [{{ between = [\"holder\", \"post\"], keep = 1 }}]\n"
+            "{fixture}keep = 20\npairs = [{{ between = [\"holder\", \"post\"], keep = 1 }}]\n"
         ),
     );
     let (said, clear) = proven(&folder, &[]);
     assert!(!clear);
-    assert_contains(&said, &["stock comes within"]);
+    assert_contains(&said, &["of cutter T3; 20 mm are to be kept"]);
+    assert!(!said.contains("of holder T3"), "{said}");
     describe(
         &folder,
         "[clearance]\npairs = [{ between = [\"cutter T3\", \"stock\"], keep = 1 }]\n",
@@ -257,6 +258,15 @@ fn verify_batches_and_job_files_prove_as_posting_does() {
     assert_eq!(rows[0]["clear_by_mm"], summary["clearance"]["pairs"][0]["clear_by_mm"]);
     assert_eq!((&rows[0]["state"], &rows[1]["state"]), (&"written".into(), &"refused".into()));
     assert_eq!(rows[1]["codes"], "clearance");
+    // What a job sets stands in the place of what the machine file has, whatever its shape, or takes it away.
+    let round = ["--set", "stock.cylinder=[[0,0,0],[0,0,60]]", "--set", "stock.radius=20"];
+    let run = verify(&[&round[..], &["--set", "clearance.keep=5"]].concat());
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert_contains(&run.err, &["stock comes within", "of holder T3; 5 mm are to be kept"]);
+    let run =
+        verify(&["--set", "stock.file=\"\"", "--set", "fixture.far.block=[[300,0,0],[310,9,9]]"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(!run.out.contains("stock  "), "{}", run.out);
     // A job file asks for it, and brings a stock of its own.
     let job = format!(
         "machine = \"bodies.toml\"\ncl = {blade:?}\noutput = \"job.nc\"\nclearance = true\n\
@@ -281,6 +291,19 @@ fn check_tells_what_touches_and_what_has_no_body() {
             "head and post touch where the axes stand at zero",
         ],
     );
+}
+
+#[test]
+fn check_draws_all_bodies_with_their_names() {
+    let folder = folder("[fixture.post]\nblock = [[60, -60, 0], [90, 60, 40]]\n");
+    let run = post_in(folder.path(), &["check", "bodies.toml", "--bodies", "bodies.svg"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let drawn = fs::read_to_string(folder.path().join("bodies.svg")).unwrap();
+    for name in ["post", "stock", "holder T3", "cutter T3"] {
+        assert_eq!(drawn.matches(&format!(">{name}</text>")).count(), 3, "{name}");
+    }
+    // The stock stands where the part sits, the tool at the gauge point.
+    assert_contains(&drawn, &["post: X 60.0 to 90.0, Y -60.0 to 60.0, Z 0.0 to 40.0 mm"]);
 }
 
 #[test]

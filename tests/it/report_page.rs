@@ -51,6 +51,50 @@ fn state(browser: &mut Browser, name: &str) -> Value {
     browser.ask(&format!("P.state.{name}"))
 }
 
+/// What was proven of pairs of bodies is told with the place of each nearest approach, and colours the path; bodies stand
+/// where the machine file has them.
+#[test]
+fn clearance_is_told_of_pairs_and_along_the_path() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let machine = "extends = \"ac-trunnion\"\nname = \"with bodies\"\n[stock]\nblock = [[-50, -30, 0], [50, 30, 28]]\n\
+                   [fixture.jaw]\nblock = [[60, -60, 0], [90, 60, 40]]\n[tools.3]\nlength = 100\n\
+                   holder = [[0, 32], [20, 32], [20, 20], [60, 18]]\ncutter = [[0, 5], [40, 5]]\n";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bodies.toml");
+    fs::write(&path, machine).unwrap();
+    let made = made(path.to_str().unwrap(), &sample("blade.cls"), &["--clearance"]);
+    browser.open(&made.page);
+    let pairs = browser.ask("P.m.meta.clearance.pairs");
+    let told = made.summary["clearance"]["pairs"].as_array().unwrap();
+    assert_eq!(pairs.as_array().unwrap().len(), told.len());
+    let nearest = &pairs[0];
+    assert_eq!(nearest["bodies"], json!(["jaw", "holder T3"]));
+    // It leads to its line.
+    browser.ask("document.querySelectorAll('#verdict .maxima')[1].querySelector('button').click()");
+    assert_eq!(browser.ask("P.m.lineOf('nc', P.state.row)"), nearest["nc"]);
+    // No block is nearer than is proven of the program, and the nearest is as near as that.
+    let blocks = browser.ask("[...P.m.column('clearance')]");
+    let blocks: Vec<f64> = blocks.as_array().unwrap().iter().filter_map(Value::as_f64).collect();
+    assert_eq!(json!(blocks.len()), browser.ask("P.m.rows"));
+    let least = blocks.iter().copied().fold(f64::INFINITY, f64::min);
+    let by = nearest["clear_by"].as_f64().unwrap();
+    assert!((least - by).abs() < 0.06 * by, "{least} {by}");
+    let own = browser.ask("P.m.at('clearance', P.state.row)").as_f64().unwrap();
+    assert!(own <= nearest["nearest"].as_f64().unwrap() && own < 1.06 * least, "{own} {least}");
+    // The path is coloured by it, the nearest as far up the scale as there is.
+    browser.ask("P.set({ colour: P.colour.modes.findIndex(({ id }) => id === 'clearance') })");
+    let place = browser.ask("P.colour.place(P.colour.mode(), P.colour.mode().value(P.worst()))");
+    assert_eq!(place, browser.ask("P.colour.top"));
+    assert_eq!(browser.ask("P.m.at('clearance', P.worst())").as_f64(), Some(least));
+    // Twelve edges of the stock and of the jaw, and the tool as the machine file has it.
+    browser.ask("P.set({ machine: true })");
+    let corners = browser.ask("P.m.report.tables.solids.rows");
+    assert_eq!(corners, json!(12 * 2 + 12 * 2 + 12 * 3));
+    assert_eq!(browser.ask("P.parts.made.outline.holder.length"), json!(4));
+}
+
 /// Operations and tools stand in a list, in the order of the program, and each leads to where it begins.
 #[test]
 fn operations_and_tools_are_gone_to() {

@@ -1,5 +1,6 @@
 //! `post check`: what a machine file means, to be compared with the machine.
 
+mod bodies_picture;
 mod check_text;
 mod reach_picture;
 
@@ -31,6 +32,7 @@ use post_job::{
 #[command(after_help = "Examples:
   post check ac-trunnion
   post check my-mill.toml --svg reach.svg --json check.json
+  post check my-mill.toml --bodies bodies.svg
   post check measured.toml --nominal ac-trunnion --tool-length 100
   post check my-mill.toml --commission -o commission.nc
 
@@ -58,6 +60,10 @@ pub struct CheckArguments {
     /// Draws the reachable directions of the tool: tilt and azimuth, seen from the part.
     #[arg(long, value_name = "FILE", value_parser = file())]
     svg: Option<PathArg>,
+
+    /// Draws all bodies with their names, every axis at zero: `[solids]`, fixtures, the stock, outlines of tools.
+    #[arg(long, value_name = "FILE", value_parser = file(), conflicts_with_all = ["nominal", "commission"])]
+    bodies: Option<PathArg>,
 
     /// Writes the same as JSON, with all digits; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
@@ -141,8 +147,9 @@ fn alone(session: &Session, arguments: &CheckArguments, machine: &Machine) -> Re
     check.warnings.extend(messages);
     findings.extend(solids);
     let picture = arguments.svg.as_ref().map(|_| reach_picture::draw(&check));
+    let bodies = arguments.bodies.as_ref().map(|_| bodies_picture::draw(machine));
     let json = arguments.json.as_ref().map(|_| files::json(&check));
-    let taken = write(session, arguments, picture, json)?;
+    let taken = write(session, arguments, [picture, bodies], json)?;
     session.findings(&findings);
     if taken {
         return Ok(());
@@ -168,7 +175,7 @@ fn with_nominal(
     let compared =
         compare(machine, &nominal, arguments.tool_length).map_err(|fault| differing(&fault))?;
     let json = arguments.json.as_ref().map(|_| files::json(&compared));
-    if !write(session, arguments, None, json)? {
+    if !write(session, arguments, [None, None], json)? {
         print(session, &check_text::comparison(&compared));
     }
     Ok(())
@@ -227,18 +234,22 @@ fn differing(fault: &Differing) -> Diagnostic {
     }
 }
 
-/// Writes picture and JSON, those that are asked for: both or none. True if standard output is taken by one of them, so that
-/// nothing else is printed there.
+/// Writes pictures (of reach, of bodies) and JSON, those that are asked for: all or none. True if standard output is taken by
+/// one of them, so that nothing else is printed there.
 fn write(
     session: &Session,
     arguments: &CheckArguments,
-    picture: Option<String>,
+    [reach, bodies]: [Option<String>; 2],
     json: Option<String>,
 ) -> Result<bool, Failure> {
     let of = |role, target: &'_ Option<PathArg>, text: Option<String>| {
         target.clone().zip(text).map(|(target, text)| (role, target, text))
     };
-    let texts = [of(Role::PICTURE, &arguments.svg, picture), of(Role::JSON, &arguments.json, json)];
+    let texts = [
+        of(Role::PICTURE, &arguments.svg, reach),
+        of(Role::PICTURE, &arguments.bodies, bodies),
+        of(Role::JSON, &arguments.json, json),
+    ];
     let texts = texts.iter().flatten();
     let texts: Vec<_> = texts.map(|(role, target, text)| (*role, target, text.as_str())).collect();
     Ok(files::write(session, &texts)?)

@@ -242,6 +242,70 @@ fn a_tip_that_the_control_keeps_is_proven_by_where_the_axes_go() {
     assert!(count.clear > at_least(80) && count.faults > at_least(50), "{count:?}");
 }
 
+/// Of several bodies the nearest two are told of each motion by itself, whatever was known of the motion before.
+#[test]
+fn on_each_motion_the_nearest_two_are_told() {
+    let (rounds, mut rng) = randomised(600, 315);
+    let (mut told, mut close, mut touching) = (0, 0, 0);
+    for _ in rounds {
+        let machine = Random::new(&mut rng, 2, 0);
+        let Some(solver) = solver(&machine) else { continue };
+        let joints = &machine.reference.joints;
+        let size = rng.range(20.0, 120.0);
+        let mut piece = || {
+            let at = rng.point(150.0);
+            any_piece(&mut rng, at, size)
+        };
+        let pieces = [0, joints.len(), 0, joints.len()].map(|link| (link, piece()));
+        let body = |(link, piece): &(usize, Convex)| Body {
+            name: String::new(),
+            kind: BodyKind::Machine,
+            link: *link,
+            shape: Shape::new(vec![piece.clone()]).unwrap(),
+        };
+        let all = pieces.iter().map(body).collect();
+        let mut proof = Proof::new(joints, all, Rules::default(), |_, _| true);
+        let mut from = machine.values(&mut rng);
+        for _ in 0..4 {
+            let mut to = machine.values(&mut rng);
+            let share = rng.order(-3.0, -0.5);
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = from + (*to - from) * share;
+            }
+            let ends = [stance(&solver, from), stance(&solver, to)];
+            let way = Way {
+                solver: &solver,
+                interpolation: &Interpolation::Axes,
+                ends: [&ends[0], &ends[1]],
+                independent: false,
+            };
+            let found = proof.closest(&Move { way, rapid: false, line: 1 }, |_, _| true).unwrap();
+            let mut sampled = f64::INFINITY;
+            for look in 0..=24 {
+                let t = f64::from(look) / 24.0;
+                let q = std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * t);
+                let placed = pieces
+                    .each_ref()
+                    .map(|(link, piece)| (*link, moved(piece, &product(joints, &q, 0, *link))));
+                for (first, one) in &placed {
+                    for (_, other) in placed.iter().filter(|(second, _)| second > first) {
+                        sampled = sampled.min(apart(one, other));
+                    }
+                }
+            }
+            assert!(found <= sampled + 1e-9, "told {found} sampled {sampled}");
+            touching += u32::from(found == 0.0);
+            if found > 0.0 {
+                told += 1;
+                close += u32::from(found >= 0.93 * sampled - 0.03);
+            }
+            from = to;
+        }
+    }
+    assert!(told > at_least(300) && touching > 0, "{told} {touching}");
+    assert!(close * 20 >= told * 19, "{close} of {told}");
+}
+
 /// A body inside another whose surface it does not touch.
 #[test]
 fn what_a_mesh_encloses_hits() {

@@ -9,7 +9,7 @@ use post_clearance::convex::Convex;
 use post_clearance::placement::Placement;
 use post_clearance::proof::{Body, BodyKind};
 use post_clearance::shape::{MeshFaults, Shape};
-use post_machine::description::{GivenBody, GivenShape, Machine, ToolOutline};
+use post_machine::description::{GivenBody, GivenShape, Machine, Solid, ToolOutline};
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_report::solid;
 
@@ -43,17 +43,22 @@ pub(super) fn of_machine(machine: &Machine, findings: &mut Vec<Diagnostic>) -> V
     for solid in &machine.solids {
         let kind =
             if solid.whole || solid.body > 0 { BodyKind::Machine } else { BodyKind::Fixture };
-        let name = match (solid.whole, solid.body) {
-            (false, 0) => "w".to_owned(),
-            (false, _) => "t".to_owned(),
-            (true, link) => link_name(machine, link),
-        };
+        let name = solid_name(machine, solid);
         let at = (&solid.place, name.as_str());
         if let Some(shape) = mesh(&solid.file, at, &|corner| corner, findings) {
             bodies.push(Body { name, kind, link: solid.body, shape });
         }
     }
     bodies
+}
+
+/// What the machine file calls a body of `[solids]`.
+pub fn solid_name(machine: &Machine, solid: &Solid) -> String {
+    match (solid.whole, solid.body) {
+        (false, 0) => "w".to_owned(),
+        (false, _) => "t".to_owned(),
+        (true, link) => link_name(machine, link),
+    }
 }
 
 /// What the machine file calls a link: `b` the bed, else the axis that moves it.

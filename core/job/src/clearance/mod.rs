@@ -22,7 +22,7 @@ use crate::failure::Failure;
 use crate::files::PathArg;
 use crate::nc_program::{self, NcControl, ProgramFile, ProgramText, open_as};
 use crate::session::Session;
-pub(crate) use bodies::of_stock;
+pub(crate) use bodies::{of_stock, solid_name};
 
 use bodies::link_name;
 use watch::ClearanceWatch;

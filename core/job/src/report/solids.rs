@@ -9,7 +9,7 @@ use post_clearance::placement::Placement;
 use post_machine::description::{GivenShape, Machine};
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_report::meta::Meta;
-use post_report::solid::{DrawnSolid, MOST_EDGES, MOST_TRIANGLES};
+use post_report::solid::{DrawnSolid, MOST_EDGES, MOST_TRIANGLES, Vertex};
 use post_report::table::{TableColumn, TableWriter};
 
 use super::given_bodies;
@@ -20,6 +20,8 @@ use crate::failure::Failure;
 /// A body that is drawn as a machine file describes it.
 #[derive(Clone)]
 struct DrawnBody<'m> {
+    /// What tables of clearance call it.
+    name: String,
     /// What it hangs on: 0 is the part, n what follows the nth axis of the chain.
     link: usize,
     /// It stands in place of what follows from the chain.
@@ -38,6 +40,35 @@ pub fn faults(machine: &Machine) -> Vec<Diagnostic> {
     sets(machine).iter().flat_map(|set| shapes(set).1).collect()
 }
 
+/// A body as lines: its name, as tables of clearance have it, and its edges, mm, machine frame, every axis at zero.
+#[derive(Clone, Debug)]
+pub struct BodyEdges {
+    /// The name.
+    pub name: String,
+    /// The edges.
+    pub edges: Vec<[Vertex; 2]>,
+}
+
+/// All bodies of a machine without its heads, and of its tools, of which a shape is known.
+pub fn edges(machine: &Machine) -> Vec<BodyEdges> {
+    let set = bodies(machine);
+    let shapes = shapes(&set).0.into_iter();
+    let mut all: Vec<BodyEdges> =
+        shapes.map(|(body, solid)| BodyEdges { name: body.name, edges: solid.edges }).collect();
+    for outline in &machine.outlines {
+        let number = outline.number;
+        let length = machine.tools.iter().find(|(tool, _)| *tool == number);
+        let tip = machine.gauge - machine.tool_axis * length.map_or(0.0, |(_, length)| *length);
+        let holder = given_bodies::turned(&outline.holder, machine.gauge, -machine.tool_axis);
+        let cutter = given_bodies::turned(&outline.cutter, tip, machine.tool_axis);
+        for (what, edges) in [("holder", holder), ("cutter", cutter)] {
+            all.push(BodyEdges { name: format!("{what} T{number}"), edges });
+        }
+    }
+    all.retain(|body| !body.edges.is_empty());
+    all
+}
+
 /// The bodies of a machine and those of its heads that have others.
 fn sets(machine: &Machine) -> Vec<Vec<DrawnBody<'_>>> {
     let heads = machine.heads.iter().map(|head| &head.machine);
@@ -54,6 +85,7 @@ fn sets(machine: &Machine) -> Vec<Vec<DrawnBody<'_>>> {
 /// The bodies of a machine without its heads.
 fn bodies(machine: &Machine) -> Vec<DrawnBody<'_>> {
     let solids = machine.solids.iter().map(|solid| DrawnBody {
+        name: clearance::solid_name(machine, solid),
         link: solid.body,
         whole: solid.whole,
         shape: Cow::Owned(GivenShape::File(solid.file.clone())),
@@ -63,6 +95,7 @@ fn bodies(machine: &Machine) -> Vec<DrawnBody<'_>> {
     let fixtures = machine.fixtures.iter().map(|body| (body, None));
     let stock = machine.stock.iter().map(|body| (body, Some(clearance::of_stock(machine))));
     let given = fixtures.chain(stock).map(|(body, stock)| DrawnBody {
+        name: body.name.clone(),
         link: body.link,
         whole: false,
         shape: Cow::Borrowed(&body.shape),

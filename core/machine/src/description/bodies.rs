@@ -50,7 +50,8 @@ keys! {
         cylinder: Option<Spanned<[[KeyedNumber; 3]; 2]>>,
         /// Radius of the cylinder, mm.
         radius: Option<KeyedNumber> = RADIUS,
-        /// An STL file, mm, in the frame of `block`. A path is that from this file.
+        /// An STL file, mm, in the frame of `block`. A path is that from this file; an empty one takes the body away that an
+        /// extended machine has.
         file: Option<Spanned<String>>,
     }
 }
@@ -260,6 +261,7 @@ impl Builder<'_> {
                 let ends = ends.get_ref().each_ref().map(|end| self.vector(end));
                 GivenShape::Cylinder { ends, radius }
             }
+            (None, None, None, Some(stl)) if stl.get_ref().is_empty() => return None,
             (None, None, None, Some(stl)) => GivenShape::File(self.stl_path("machine-body", stl)?),
             _ => {
                 let message = format!("{name} has no shape, or more than one");

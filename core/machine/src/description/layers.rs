@@ -372,6 +372,12 @@ const INSTEAD: &[(&str, &str)] = &[
     ("transfer", "pid"),
     ("screw", "direct"),
     ("gear", "direct"),
+    // A body has one shape.
+    ("block", "cylinder"),
+    ("block", "radius"),
+    ("block", "file"),
+    ("cylinder", "file"),
+    ("radius", "file"),
 ];
 
 /// Lays a table over another, key by key.

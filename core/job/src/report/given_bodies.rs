@@ -48,6 +48,9 @@ pub(super) fn cylinder([one, other]: [Vector3<f64>; 2], radius: f64) -> DrawnSol
         solid.triangles.extend([[a, b, d], [a, d, c], [one.into(), b, a], [other.into(), c, d]]);
         solid.edges.extend([[a, b], [c, d]]);
     }
+    // How far it reaches is seen from the side.
+    let sides = (0..SIDES).step_by(SIDES / 4);
+    solid.edges.extend(sides.map(|side| [low[side], high[side]]));
     solid
 }
 

@@ -264,7 +264,10 @@ impl JobWords<'_> {
                 self.words.iter().any(|word| program.is_named(Path::new(word)))
             }
         };
-        let meant: Vec<&JobProgram> = all.iter().filter(is_named).collect();
+        let mut meant: Vec<&JobProgram> = all.iter().filter(is_named).collect();
+        if let (true, JobPlace::Head(path)) = (meant.is_empty(), named) {
+            meant.extend(all.iter().filter(|program| program.is_titled(path)));
+        }
         match (meant.as_slice(), all.as_slice()) {
             ([], [one]) => Ok(vec![one]),
             ([], _) => {

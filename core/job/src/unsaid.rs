@@ -77,7 +77,9 @@ impl Unsaid<'_> {
 
     /// Where the tool comes down first.
     fn comes_down(&self) -> Option<Diagnostic> {
-        let (line, axes) = self.report.blind.as_ref().filter(|_| self.own)?;
+        let ReadReport { blind, unsaid, unturned, .. } = self.report;
+        let told = unsaid.is_some() || unturned.is_some();
+        let (line, axes) = blind.as_ref().filter(|_| self.own && !told)?;
         let message = format!(
             "the tool comes down before the program says where {axes} stands: it does so wherever the machine has it then"
         );

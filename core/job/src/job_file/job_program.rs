@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{JobKeys, JobMark, ToldSetting};
+use super::{JobKeys, JobMark, ToldSetting, is_titled};
 use crate::failure::Failure;
 use crate::files::PathArg;
 use crate::making;
@@ -80,6 +80,15 @@ impl JobProgram {
         let machine = crate::machine(session, &job, &[])?;
         let finder = plugin_finder::finder(session, &keys.over.plugins)?;
         making::target(&job, None, &machine, &finder)
+    }
+
+    /// It wrote the program `path`, as far as the head of that says: its name may be another by now.
+    pub fn is_titled(&self, path: &Path) -> bool {
+        let stem = match self.told.iter().find(|setting| setting.about.name == "output") {
+            Some(ToldSetting { value: SettingValue::Path(output), .. }) => output.file_stem(),
+            _ => self.cl.file_stem(),
+        };
+        stem.is_some_and(|stem| is_titled(path, &stem.to_string_lossy()))
     }
 
     /// It writes the program `path`, as far as names say.

@@ -21,6 +21,12 @@ const DIGITS: usize = 16;
 /// A head has its mark within so many bytes.
 const HEAD: u64 = 1 << 16;
 
+/// So many folders above that of a program are looked into.
+const ABOVE: usize = 3;
+
+/// A program says its name within so many lines.
+const TITLE_LINES: usize = 3;
+
 /// So many job files of a folder are looked into.
 const MOST_FILES: usize = 1_000;
 
@@ -62,10 +68,11 @@ impl JobMark {
     }
 }
 
-/// The job file that the head of a program names, out of those that lie beside the program; none if it names none.
+/// The job file that the head of a program names, out of those that lie beside the program, in the folders above it or in
+/// the working directory: a program is moved to where the machine reads it. None if it names none.
 ///
 /// # Errors
-/// It names one, and none beside it is that.
+/// It names one, and none of these is that.
 pub fn job_of_program(session: &Session, program: &PathArg) -> Result<Option<PathBuf>, Failure> {
     let Some(path) = program.path() else {
         return Ok(None);
@@ -73,16 +80,13 @@ pub fn job_of_program(session: &Session, program: &PathArg) -> Result<Option<Pat
     let Some(hash) = head(path).as_deref().and_then(JobMark::in_head) else {
         return Ok(None);
     };
-    let folder = paths::folder(path);
-    let entries = fs::read_dir(&folder).into_iter().flatten().flatten();
-    let mut names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
-    names.retain(|name| is_job_file(Path::new(name)));
-    names.sort();
-    for name in names.into_iter().take(MOST_FILES) {
-        let file = paths::joined(path.parent(), Path::new(&name));
-        let found = reading::text_of(session, &file);
-        if found.is_ok_and(|text| JobMark::new(&file, &text).hash == hash) {
-            return Ok(Some(file));
+    let beside = path.parent().map(Path::to_owned);
+    let whole = fs::canonicalize(paths::folder(path)).unwrap_or_default();
+    let above = whole.ancestors().skip(1).take(ABOVE).map(|folder| Some(folder.to_owned()));
+    for folder in [beside, None].into_iter().chain(above) {
+        let found = in_folder(session, folder.as_deref(), &hash);
+        if found.is_some() {
+            return Ok(found);
         }
     }
     let message = format!(
@@ -91,6 +95,31 @@ pub fn job_of_program(session: &Session, program: &PathArg) -> Result<Option<Pat
     );
     let help = "the job file may have been changed since: post it again, or name machine and CL file, or the job file by --machine";
     Err(Diagnostic::error("job-file", message).help(help).into())
+}
+
+/// The job file of a folder, none: the working directory, that has this hash.
+fn in_folder(session: &Session, folder: Option<&Path>, hash: &str) -> Option<PathBuf> {
+    let listed = folder.filter(|folder| !folder.as_os_str().is_empty());
+    let entries = fs::read_dir(listed.unwrap_or(Path::new("."))).into_iter().flatten().flatten();
+    let mut names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
+    names.retain(|name| is_job_file(Path::new(name)));
+    names.sort();
+    let files = names.into_iter().take(MOST_FILES);
+    let mut files = files.map(|name| paths::joined(folder, Path::new(&name)));
+    files.find(|file| {
+        let found = reading::text_of(session, file);
+        found.is_ok_and(|text| JobMark::new(file, &text).hash == hash)
+    })
+}
+
+/// Whether the head of a program has this name in a remark or a word of its own: that under which it was posted.
+pub fn is_titled(program: &Path, name: &str) -> bool {
+    let name = as_remark(name.to_owned()).to_ascii_lowercase();
+    let text = head(program).unwrap_or_default().to_ascii_lowercase();
+    let lines = text.lines().take(TITLE_LINES).filter(|line| !line.contains(&WORD.to_lowercase()));
+    let is_part = |next: char| next.is_alphanumeric() || "-_".contains(next);
+    let mut words = lines.flat_map(|line| line.split(|next| !is_part(next)));
+    !name.is_empty() && words.any(|word| word == name)
 }
 
 /// Whether the head of a program names a job file: `post` has written it.

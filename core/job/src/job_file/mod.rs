@@ -14,7 +14,7 @@ mod told_setting;
 
 pub use job_keys::JobKeys;
 pub use job_program::JobProgram;
-pub use mark::{JobMark, is_marked, job_of_program};
+pub use mark::{JobMark, is_marked, is_titled, job_of_program};
 pub use reading::read;
 pub use saving::{SavedJob, text};
 pub use schema::schema;

@@ -151,7 +151,9 @@ impl ControlState {
         let axes = self.machine.axes.iter().enumerate();
         let unsaid = axes
             .filter(|(place, axis)| axis.joint.rotary == rotary && self.said & (1 << place) == 0);
-        unsaid.map(|(_, axis)| axis.name.as_str()).collect::<Vec<&str>>().join(", ")
+        let mut names: Vec<&str> = unsaid.map(|(_, axis)| axis.name.as_str()).collect();
+        names.sort_unstable();
+        names.join(", ")
     }
 
     /// A rapid ahead of the first motion at feed: does the depth move while the tool is nobody knows where over the part?

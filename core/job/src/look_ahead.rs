@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::ops::Range;
 
 use post_host::Finder;
-use post_machine::description::Machine;
+use post_machine::description::{Machine, OutputUnits};
 use post_posting::{PostingRequest, ProgramPreview};
 
 use super::posting_pass::{self, OpenedPlugins, PostingPass, ProgramHead};
@@ -31,7 +31,8 @@ pub fn look_ahead(
     let input = source.open()?;
     let request =
         PostingRequest { ahead: planes, lines, ..posting_pass::posting_request(arguments, &input) };
-    let mut ahead = ProgramPreview::default();
+    let inch = machine.control.units == OutputUnits::Inch;
+    let mut ahead = ProgramPreview { inch, ..ProgramPreview::default() };
     let pass = PostingPass {
         machine: &plain,
         request,

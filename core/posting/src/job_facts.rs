@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use post_machine::axis_words::unit_length;
+use post_machine::description::OutputUnits;
 use post_plugin::{Feed, Spindle};
 
 use crate::blocks::MotionBlock;
@@ -35,8 +37,12 @@ pub struct ProgramPreview {
     pub extents: Option<[[f64; 3]; 2]>,
     /// Time without tool changes, s; none if it was not filled in.
     pub time_s: Option<f64>,
+    /// Lengths of the program are inches.
+    pub inch: bool,
     /// Lines of the CL file on which an operation begins.
     pub operations: Vec<u64>,
+    /// The tool that each operation begins with, by its place among the changes; none where no tool was changed.
+    pub begins_with: Vec<Option<usize>>,
     /// The names of the operations.
     pub names: Vec<String>,
     /// Lines on which the part of the file begins that a further tool works: that of its operation, if one begins
@@ -69,13 +75,26 @@ impl ProgramPreview {
     }
 }
 
+impl ProgramPreview {
+    /// The feed of a block a minute, in units of the program: as it is printed, else that of its way in its time.
+    fn feed_a_minute(&self, block: &MotionBlock) -> Option<f64> {
+        if let Some(Feed::PerMinute(feed)) = block.time.feed {
+            return Some(feed);
+        }
+        let unit = unit_length(if self.inch { OutputUnits::Inch } else { OutputUnits::Mm });
+        let feed = block.way / unit / block.time.minutes;
+        (feed.is_finite() && feed > 0.0).then_some(feed)
+    }
+}
+
 impl Observer for ProgramPreview {
     fn block(&mut self, block: &MotionBlock) {
         self.work.block(block);
         self.pending = None;
         self.moved = true;
-        if let (Some(Feed::PerMinute(feed)), Some(most)) = (block.time.feed, self.feeds.last_mut())
-            && block.kind.cuts()
+        if block.kind.cuts()
+            && let Some(feed) = self.feed_a_minute(block)
+            && let Some(most) = self.feeds.last_mut()
         {
             *most = Some(most.map_or(feed, |most| most.max(feed)));
         }
@@ -94,6 +113,11 @@ impl Observer for ProgramPreview {
                 if std::mem::take(&mut self.moved) {
                     self.parts.push(self.pending.unwrap_or(line));
                 }
+                if self.pending.is_some()
+                    && let Some(first) = self.begins_with.last_mut()
+                {
+                    *first = Some(self.changes.len());
+                }
                 self.changes.push(tool.clone());
                 self.speeds.push(None);
             }
@@ -107,6 +131,7 @@ impl Observer for ProgramPreview {
                 self.names.push(name.clone());
                 self.pending = Some(line);
                 self.operations.push(line);
+                self.begins_with.push(self.changes.len().checked_sub(1));
             }
             _ => {}
         }

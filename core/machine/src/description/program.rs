@@ -190,7 +190,8 @@ pub struct ProgramRules {
     pub preselect: bool,
     /// Ending of the program's file, without a dot.
     pub extension: Option<String>,
-    /// Some template speaks of what is known ahead alone: tools, extents, time, the next tool, speeds and feeds.
+    /// Some template speaks of what is known ahead alone: tools, extents, time, the next tool, speeds and feeds, the tool of
+    /// an operation ahead of it.
     pub looks_ahead: bool,
     /// The names of the rotary axes.
     rotary: Vec<String>,
@@ -297,7 +298,9 @@ impl Builder<'_> {
             let source: Vec<&str> =
                 lines.get_ref().0.iter().map(|(line, _)| line.as_str()).collect();
             let source = source.join("\n");
-            rules.looks_ahead |= AHEAD.iter().any(|fact| source.contains(fact));
+            rules.looks_ahead |= AHEAD.iter().any(|fact| source.contains(fact))
+                // The tool of an operation comes behind its name.
+                || at == TextPlace::BeforeOperation && source.contains("tool.");
             let text = self.text(at, lines, &source, &rules.rotary);
             rules.texts.extend(text);
         }

@@ -115,8 +115,8 @@ pub struct CompensationFacts {
 /// A tilted plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct PlaneFacts {
-    /// Its angles as the control is told them, degrees; zero where it has none.
-    pub angles: [f64; 3],
+    /// Its angles as the control is told them, degrees; none where it takes the plane from the rotary axes.
+    pub angles: Option<[f64; 3]>,
     /// Its origin, mm, part frame.
     pub origin: [f64; 3],
     /// Its normal, unit vector, part frame.

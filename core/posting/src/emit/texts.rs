@@ -14,17 +14,17 @@ use post_plugin::{Compensation, Coolant, Event, Spindle, SpindleSense};
 
 use super::EmitStage;
 use crate::findings::Findings;
-use crate::job_facts::JobFacts;
+use crate::job_facts::{JobFacts, ProgramPreview};
 use crate::program::ToolChange;
 
 /// The templates of a machine, and what is known at this place of the program.
 pub(super) struct ProgramTexts<'a> {
     rules: &'a ProgramRules,
     facts: Facts,
-    /// Numbers of the tools in the order of their changes, if they are known ahead.
-    changes: Vec<u32>,
-    /// The speed that each first gets, likewise.
-    speeds: Vec<Option<f64>>,
+    /// The tools in the order of their changes, if they are known ahead.
+    changes: Vec<ToolFacts>,
+    /// The tool that each operation begins with, by its place among them, likewise.
+    begins_with: Vec<Option<usize>>,
     /// Largest feed of each operation, likewise.
     feeds: Vec<Option<f64>>,
     /// Changes so far.
@@ -61,10 +61,8 @@ impl<'a> ProgramTexts<'a> {
         Self {
             rules: &machine.program,
             facts: Facts { program, ..Facts::default() },
-            changes: ahead
-                .map(|ahead| ahead.changes.iter().map(|tool| tool.number).collect())
-                .unwrap_or_default(),
-            speeds: ahead.map(|ahead| ahead.speeds.clone()).unwrap_or_default(),
+            changes: ahead.map(changes).unwrap_or_default(),
+            begins_with: ahead.map(|ahead| ahead.begins_with.clone()).unwrap_or_default(),
             feeds: ahead.map(|ahead| ahead.feeds.clone()).unwrap_or_default(),
             changed: 0,
             operations: 0,
@@ -99,11 +97,12 @@ impl<'a> ProgramTexts<'a> {
 
     /// A tool is about to come.
     pub(super) fn tool(&mut self, tool: &ToolChange) {
-        let speed = self.speeds.get(self.changed).copied().flatten();
+        let speed = self.changes.get(self.changed).and_then(|known| known.speed);
         self.changed += 1;
         self.facts.last_tool = self.facts.tool.replace(ToolFacts { speed, ..tool_facts(tool) });
         let behind = self.changes.get(self.changed..).unwrap_or_default();
-        self.facts.next_tool = behind.iter().copied().find(|next| *next != tool.number);
+        let mut numbers = behind.iter().map(|next| next.number);
+        self.facts.next_tool = numbers.find(|next| *next != tool.number);
     }
 
     /// Some tool was changed before the one that is about to come.
@@ -154,6 +153,13 @@ impl<'a> ProgramTexts<'a> {
     }
 }
 
+/// The tools of all changes, with the speed that each first gets.
+fn changes(ahead: &ProgramPreview) -> Vec<ToolFacts> {
+    let speeds = ahead.speeds.iter().copied().chain(std::iter::repeat(None));
+    let changes = ahead.changes.iter().zip(speeds);
+    changes.map(|(tool, speed)| ToolFacts { speed, ..tool_facts(tool) }).collect()
+}
+
 fn tool_facts(tool: &ToolChange) -> ToolFacts {
     ToolFacts {
         number: tool.number,
@@ -199,8 +205,13 @@ fn compensation_facts(compensation: Compensation) -> Option<CompensationFacts> {
     Some(CompensationFacts { side: side.to_owned(), register })
 }
 
-fn plane_facts(plane: &TiltedPlane) -> PlaneFacts {
-    PlaneFacts { angles: plane.angles, origin: plane.origin.into(), normal: plane.normal().into() }
+/// A plane; it has `angles` where the control is told any.
+fn plane_facts(plane: &TiltedPlane, angles: bool) -> PlaneFacts {
+    PlaneFacts {
+        angles: angles.then_some(plane.angles),
+        origin: plane.origin.into(),
+        normal: plane.normal().into(),
+    }
 }
 
 impl EmitStage<'_> {
@@ -212,8 +223,19 @@ impl EmitStage<'_> {
         facts.coolant = self.coolant.commanded.and_then(coolant_name);
         facts.work_offset = self.offset;
         facts.compensation = self.compensation.commanded.and_then(compensation_facts);
-        facts.plane = self.plane.wanted.as_deref().map(plane_facts);
-        self.texts.lines(line, at)
+        let angles = self.writer.format().plane_angles.order().is_some();
+        facts.plane = self.plane.wanted.as_deref().map(|plane| plane_facts(plane, angles));
+        // The tool of an operation may come behind its name.
+        let first = (self.texts.operations as usize).checked_sub(1);
+        let first = first.filter(|_| at == TextPlace::BeforeOperation);
+        let first = first.and_then(|place| *self.texts.begins_with.get(place)?);
+        let Some(first) = first.and_then(|change| self.texts.changes.get(change).cloned()) else {
+            return self.texts.lines(line, at);
+        };
+        let present = self.texts.facts.tool.replace(first);
+        let lines = self.texts.lines(line, at);
+        self.texts.facts.tool = present;
+        lines
     }
 
     /// Lines behind or before a turn of the rotary axes to `words`.

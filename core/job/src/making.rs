@@ -224,17 +224,24 @@ impl<'a> ProgramMaker<'a> {
         source: &mut ClSource,
     ) -> Result<(), Failure> {
         match machine.program.looks_ahead {
-            true => self.look_ahead(machine, source),
+            true => self.look_ahead(machine, source, None),
             false => Ok(()),
         }
     }
 
-    /// Makes the first pass over the CL file.
+    /// Makes the first pass over the CL file, or over these lines of it.
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn look_ahead(&mut self, machine: &Machine, source: &mut ClSource) -> Result<(), Failure> {
-        let found = super::look_ahead(self.session, self.job, machine, &self.finder, source, None)?;
+    pub fn look_ahead(
+        &mut self,
+        machine: &Machine,
+        source: &mut ClSource,
+        lines: Option<&ProgramLines>,
+    ) -> Result<(), Failure> {
+        let lines = lines.map(|lines| lines.ranges.clone());
+        let Self { session, job, finder, .. } = self;
+        let found = super::look_ahead(session, job, machine, finder, source, lines)?;
         self.ahead = Some(found);
         Ok(())
     }

@@ -31,6 +31,15 @@ impl ProgramLines {
         Self { ranges: vec![lines], left_out: Vec::new() }
     }
 
+    /// Those within `part`, because a file becomes several programs.
+    pub fn within(&self, part: &Range<u64>) -> Self {
+        let ranges = self.ranges.iter().map(|range| Range {
+            start: range.start.max(part.start),
+            end: range.end.min(part.end),
+        });
+        Self { ranges: ranges.filter(|range| !range.is_empty()).collect(), left_out: Vec::new() }
+    }
+
     /// What the head of the program says of it.
     pub fn remark(&self) -> Option<String> {
         let list = self.left_out.join(", ");

@@ -9,7 +9,7 @@ use clap::Args;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity};
 
-use parts::Caller;
+use parts::{Caller, WholeJob};
 use post_cli::arguments::flag_values::file;
 use post_cli::arguments::{Flags, JobArguments};
 use post_cli::terminal;
@@ -18,7 +18,7 @@ use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
 use post_job::job_file::{self, JobMark, SavedJob};
 use post_job::making::{self, ProgramMaker, ProgramOutcome, ProgramPart, ProgramRequest};
 use post_job::old_summary::OldSummary;
-use post_job::operations::{self, ProgramLines};
+use post_job::operations;
 use post_job::predict::Prediction;
 use post_job::session::Session;
 use post_job::settings::{
@@ -190,11 +190,13 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
     }
     maker.threads = arguments.threads.0.most();
     let mut source = ClSource::of_job(session, job, arguments.reads_twice(&machine))?;
+    let chosen = operations::chosen(job, &mut source)?;
     if arguments.looks_ahead(&machine) {
-        maker.look_ahead(&machine, &mut source)?;
+        maker.look_ahead(&machine, &mut source, chosen.as_ref())?;
     }
     let maker = maker;
-    let (parts, caller) = the_parts(&maker, arguments, machine, &mut source)?;
+    let whole = WholeJob { begins: source.further(), chosen };
+    let (parts, caller) = the_parts(&maker, arguments, machine, whole)?;
     let places = Places::of(outputs, parts.len());
     let folders = places.folders(session)?;
     let mut texts = OutputFiles::create(session, arguments, &parts, caller.as_ref(), &places.maps)?;
@@ -270,7 +272,8 @@ fn write_besides(
         let machine = &parts[0].machine;
         let job = SheetJob {
             machine,
-            cl_file: &maker.job.input,
+            cl_files: maker.job.files().collect(),
+            left_out: parts.iter().find_map(|part| part.lines.as_ref()?.remark()),
             work_offset: plugin_finder::work_offset(&maker.finder, machine),
             relies_on: plugin_finder::relies_on(&maker.finder, machine)?,
             ahead,
@@ -322,7 +325,7 @@ fn the_parts(
     maker: &ProgramMaker<'_>,
     arguments: &PostArguments,
     machine: Machine,
-    source: &mut ClSource,
+    whole: WholeJob,
 ) -> Result<(Vec<ProgramPart>, Option<Caller>), Failure> {
     let ProgramMaker { session, job, finder, ahead, .. } = maker;
     let outputs = &arguments.outputs.0;
@@ -333,14 +336,8 @@ fn the_parts(
             let help = "--split operations or --split tools makes several";
             return Err(Diagnostic::error("caller", message).help(help).into());
         }
-        let lines = operations::chosen(job, source)?;
-        return Ok((vec![ProgramPart { lines, target, machine }], None));
+        return Ok((vec![ProgramPart { lines: whole.chosen, target, machine }], None));
     };
-    if job.reading.is_chosen() {
-        let message =
-            "--split makes several programs of one whole CL file, without --then and --operations";
-        return Err(Diagnostic::error("split", message).help("leave --split out").into());
-    }
     if target == PathArg::Standard {
         return Err(Diagnostic::error(
             "split",
@@ -349,7 +346,7 @@ fn the_parts(
         .help("name a file with -o")
         .into());
     }
-    let lines = parts::lines(split, ahead)?;
+    let lines = parts::lines(split, ahead, &whole)?;
     let count = lines.len();
     // Programs of one number would take each other's place in the control.
     let number = plugin_finder::program_number(finder, &machine);
@@ -366,7 +363,7 @@ fn the_parts(
                 caller::end_as_subprogram(finder, &mut machine, number)?;
             }
             let target = parts::target(&target, dash, index + 1, count);
-            Ok(ProgramPart { lines: Some(ProgramLines::part(lines)), target, machine })
+            Ok(ProgramPart { lines: Some(lines), target, machine })
         })
         .collect();
     let programs = programs?;

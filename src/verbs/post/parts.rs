@@ -1,20 +1,33 @@
 //! `--split`: one CL file, several programs, and with `--caller` one that calls them.
 
-use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use post_machine::description::Machine;
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, FurtherFile};
 use post_posting::ProgramPreview;
 
 use post_job::caller::{self, CalledProgram};
 use post_job::failure::Failure;
 use post_job::files::PathArg;
 use post_job::making::{ProgramMaker, ProgramPart};
+use post_job::operations::ProgramLines;
 use post_job::settings::Split;
 
-/// The lines of the CL file that each program is made of: the first begins with the file, the last ends with it.
-pub fn lines(split: Split, ahead: &ProgramPreview) -> Result<Vec<Range<u64>>, Failure> {
+/// The CL files of a job before they are split.
+pub struct WholeJob {
+    /// Where the files behind the first begin in their common text.
+    pub begins: Arc<[FurtherFile]>,
+    /// The lines that are chosen; none: all.
+    pub chosen: Option<ProgramLines>,
+}
+
+/// The lines of the CL files that each program is made of: the first begins with them, the last ends with them.
+pub fn lines(
+    split: Split,
+    ahead: &ProgramPreview,
+    whole: &WholeJob,
+) -> Result<Vec<ProgramLines>, Failure> {
     let (begins, what) = match split {
         // What stands before the first operation is part of it.
         Split::Operations => (ahead.operations.get(1..), "operation (TOOL PATH)"),
@@ -28,9 +41,21 @@ pub fn lines(split: Split, ahead: &ProgramPreview) -> Result<Vec<Range<u64>>, Fa
     };
     let mut starts = vec![0];
     starts.extend_from_slice(begins);
+    if split == Split::Operations {
+        for file in whole.begins.iter() {
+            // What stands at the head of a file is part of its own first operation.
+            if let Some(first) = starts.iter_mut().find(|start| **start >= file.before) {
+                *first = file.before;
+            }
+        }
+    }
     starts.dedup();
     let ends = starts[1..].iter().copied().chain([u64::MAX]);
-    Ok(starts.iter().zip(ends).map(|(start, end)| *start..end).collect())
+    let parts = starts.iter().zip(ends).map(|(start, end)| match &whole.chosen {
+        Some(chosen) => chosen.within(&(*start..end)),
+        None => ProgramLines::part(*start..end),
+    });
+    Ok(parts.filter(|part| !part.ranges.is_empty()).collect())
 }
 
 /// The target of program `number` (from 1) of `count`: `part.nc` becomes `part-03.nc`, with this `dash`.

@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use post_machine::description::{Machine, Setting, Source, load};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, FurtherFile};
 use serde::{Deserialize, Serialize};
 
 use crate::failure::Failure;
-use crate::files::{FileFault, PathArg};
+use crate::files::{FileFault, JoinedFiles, PathArg};
 use crate::machine_files;
 use crate::session::Session;
+use crate::settings::JobSettings;
 
 /// A CL file as it was when it was read.
 #[derive(Debug)]
@@ -21,11 +23,17 @@ pub struct ClText {
     pub bytes: Arc<[u8]>,
     /// Hash of its bytes.
     pub hash: blake3::Hash,
+    /// Where the files behind the first begin, of several that are joined.
+    pub further: Arc<[FurtherFile]>,
 }
 
 impl ClText {
     fn new(bytes: Vec<u8>) -> Arc<Self> {
-        Arc::new(Self { hash: blake3::hash(&bytes), bytes: bytes.into() })
+        Self::joined(bytes, Arc::default())
+    }
+
+    fn joined(bytes: Vec<u8>, further: Arc<[FurtherFile]>) -> Arc<Self> {
+        Arc::new(Self { hash: blake3::hash(&bytes), bytes: bytes.into(), further })
     }
 }
 
@@ -147,6 +155,17 @@ impl Inputs {
             let message = format!("the text of the machine {name} was not handed over");
             Arc::new(MachineTexts::Missing(vec![(message, None)]))
         })
+    }
+
+    /// The CL files of a job as one text.
+    ///
+    /// # Errors
+    /// One of them cannot be read.
+    pub fn all_cl(&self, session: &Session, job: &JobSettings) -> Result<Arc<ClText>, Failure> {
+        let input = JoinedFiles::new(session, job.files().cloned().collect())?.open(session)?;
+        let (name, mut from, mut bytes) = (input.name, input.bytes, Vec::new());
+        from.read_to_end(&mut bytes).map_err(|error| FileFault::Read { name, error })?;
+        Ok(ClText::joined(bytes, input.further))
     }
 
     /// The CL file.

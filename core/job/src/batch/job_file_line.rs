@@ -39,9 +39,22 @@ impl JobLine {
                 }
                 "plan" => keys.making.plan == asked.plan,
                 "trust_model" => keys.making.trust_model == asked.trust_model,
-                "plan_rounds" | "compensate_servo" | "then" | "operations" => false,
+                "then" => {
+                    line.then = values(&setting.value).into_iter().map(|file| file.0).collect();
+                    true
+                }
+                "operations" => {
+                    line.operations =
+                        values(&setting.value).into_iter().map(|name| name.0).collect();
+                    true
+                }
+                "plan_rounds" | "compensate_servo" => false,
                 name if ReadingSettings::row(name).is_some() => {
-                    format!("{:?}", keys.reading) == format!("{:?}", asked.reading)
+                    let alike = |reading: &ReadingSettings| {
+                        let (then, operations) = (Vec::new(), Vec::new());
+                        format!("{:?}", ReadingSettings { then, operations, ..reading.clone() })
+                    };
+                    alike(&keys.reading) == alike(&asked.reading)
                 }
                 _ => true,
             };
@@ -58,9 +71,7 @@ fn other(setting: &ToldSetting) -> Diagnostic {
     let name = setting.about.name;
     let message = format!("{name}: a batch does the same for all of its jobs, and this is not it");
     let help = match name {
-        "plan_rounds" | "compensate_servo" | "then" | "operations" => {
-            "a batch cannot: post this job by itself".to_owned()
-        }
+        "plan_rounds" | "compensate_servo" => "a batch cannot: post this job by itself".to_owned(),
         _ => format!(
             "say it to the batch, --{}, or leave it out of the job file",
             setting.about.flag()

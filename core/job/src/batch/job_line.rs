@@ -52,6 +52,10 @@ pub struct JobLine {
     pub file: String,
     /// The machine, as `--machine` names it.
     pub machine: Option<String>,
+    /// Further CL files of the same program.
+    pub then: Vec<String>,
+    /// The operations that it is made of; none: all.
+    pub operations: Vec<String>,
     /// Parameters and keys of the machine file, as `--set` has them.
     pub set: BTreeMap<String, ValueText>,
     /// Settings of [`JobLine::rows`], by their places there: one value, or a list where the row has several columns.
@@ -64,6 +68,11 @@ impl Serialize for JobLine {
         line.serialize_entry("file", &self.file)?;
         if let Some(machine) = &self.machine {
             line.serialize_entry("machine", machine)?;
+        }
+        for (name, values) in [("then", &self.then), ("operations", &self.operations)] {
+            if !values.is_empty() {
+                line.serialize_entry(name, values)?;
+            }
         }
         if !self.set.is_empty() {
             line.serialize_entry("set", &self.set)?;
@@ -104,6 +113,8 @@ impl<'de> Visitor<'de> for JobLineVisitor {
             match key.as_str() {
                 "file" => line.file = map.next_value()?,
                 "machine" => line.machine = map.next_value()?,
+                "then" => line.then = map.next_value()?,
+                "operations" => line.operations = map.next_value()?,
                 "set" => line.set = map.next_value()?,
                 name => {
                     let Some(row) = JobLine::place(name) else {
@@ -111,7 +122,7 @@ impl<'de> Visitor<'de> for JobLineVisitor {
                         let names: Vec<String> = names.collect();
                         let names = names.join(", ");
                         return Err(A::Error::custom(format!(
-                            "unknown field `{name}`, expected one of `file`, `machine`, `set`, {names}"
+                            "unknown field `{name}`, expected one of `file`, `machine`, `then`, `operations`, `set`, {names}"
                         )));
                     };
                     let told = match JobLine::rows().nth(row).map(|(about, _)| about.columns.len())
@@ -196,10 +207,14 @@ impl JobLine {
             };
             put(&mut over, &value).map_err(|fault| format!("{}: {fault}", about.name))?;
         }
+        let mut reading = reading.clone();
+        let then = self.then.iter().map(|file| PathArg::from(PathBuf::from(file)));
+        reading.then.extend(then);
+        reading.operations.extend_from_slice(&self.operations);
         Ok(JobSettings {
             machine: self.machine.clone().unwrap_or_default(),
             input: PathArg::from(PathBuf::from(&self.file)),
-            reading: reading.clone(),
+            reading,
             over,
             mark: None,
         })

@@ -26,7 +26,7 @@ use crate::plugin_finder;
 use crate::posting_pass::PostingExtras;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
-use crate::{tools, unused_options};
+use crate::{operations, tools, unused_options};
 
 /// What came of a job, and whether the journal knew it.
 pub struct JobResult {
@@ -95,7 +95,10 @@ impl PreparedJob {
         let arguments = job
             .settings(&study.options.reading)
             .map_err(|fault| Diagnostic::error("job", fault))?;
-        let cl = inputs.cl(session, &job.file)?;
+        let cl = match arguments.reading.then.is_empty() {
+            true => inputs.cl(session, &job.file)?,
+            false => inputs.all_cl(session, &arguments)?,
+        };
         let texts = inputs.machine(&arguments.machine);
         let mut machine = texts.load(&arguments.over.settings())?;
         tools::equip(session, &mut machine)?;
@@ -140,7 +143,8 @@ fn attempt(
     let begun = std::time::Instant::now();
     let target = arguments.input.map(|path| path.with_extension("nc"));
     let part = ProgramPart { lines: None, target, machine };
-    let one = OneJob { session, study, arguments: &arguments, part, cl: &cl, stop };
+    let mut one = OneJob { session, study, arguments: &arguments, part, cl: &cl, stop };
+    one.part.lines = operations::chosen(&arguments, &mut one.source())?;
     let mut outcome = match one.make() {
         Ok(outcome) => outcome,
         Err(Failure::Refused(findings)) => JobOutcome::not_written(REFUSED, &findings),
@@ -224,7 +228,11 @@ impl OneJob<'_> {
     }
 
     fn source(&self) -> ClSource {
-        let text = HeldText { bytes: Arc::clone(&self.cl.bytes), stop: Arc::clone(self.stop) };
+        let text = HeldText {
+            bytes: Arc::clone(&self.cl.bytes),
+            further: Arc::clone(&self.cl.further),
+            stop: Arc::clone(self.stop),
+        };
         ClSource::of_held(self.session, &self.arguments.input, text)
     }
 

@@ -68,11 +68,6 @@ impl JobStudy {
                 .help("name CL files, or a list of jobs that ends in .jsonl")
                 .into());
         }
-        if options.reading.is_chosen() {
-            let message = "a batch takes one whole CL file a program (--then, --operations)";
-            let help = "post such a program by itself, or by a job file of its own";
-            return Err(Diagnostic::error("batch", message).help(help).into());
-        }
         let machines = jobs.iter().filter_map(|job| job.machine.as_deref());
         let inputs = Inputs::new(session, machines, &options.machines);
         let study = Self {

@@ -4,6 +4,8 @@ use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use post_machine::diagnostic::FurtherFile;
+
 use super::joined::JoinedFiles;
 use super::temporary::Temporary;
 use super::{ClInput, FileFault, PathArg};
@@ -29,6 +31,8 @@ pub struct ClSource {
 pub struct HeldText {
     /// The text.
     pub bytes: Arc<[u8]>,
+    /// Where the files behind the first begin in it.
+    pub further: Arc<[FurtherFile]>,
     /// Once this is set, reading it fails.
     pub stop: Arc<AtomicBool>,
 }
@@ -64,8 +68,7 @@ impl ClSource {
     pub fn of_job(session: &Session, job: &JobSettings, again: bool) -> Result<Self, Failure> {
         let mut source = Self::new(session, &job.input, again || job.reading.is_chosen())?;
         if !job.reading.then.is_empty() {
-            let all = std::iter::once(&job.input).chain(&job.reading.then);
-            source.joined = Some(JoinedFiles::new(session, all.cloned().collect())?);
+            source.joined = Some(JoinedFiles::new(session, job.files().cloned().collect())?);
         }
         Ok(source)
     }
@@ -142,6 +145,12 @@ impl ClSource {
         }
     }
 
+    /// The files behind the first.
+    pub fn further(&self) -> Arc<[FurtherFile]> {
+        let held = self.held.as_ref().map(|text| Arc::clone(&text.further));
+        held.or_else(|| self.joined.as_ref().map(JoinedFiles::further)).unwrap_or_default()
+    }
+
     /// The text in the memory, from its start.
     fn open_held(&self) -> Option<ClInput> {
         let text = self.held.as_ref()?;
@@ -149,7 +158,7 @@ impl ClSource {
             name: self.name.clone(),
             length: Some(text.bytes.len() as u64),
             bytes: Box::new(text.open()),
-            further: Arc::default(),
+            further: Arc::clone(&text.further),
         })
     }
 

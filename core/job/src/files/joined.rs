@@ -117,6 +117,11 @@ impl JoinedFiles {
         Ok(Self { arguments, further: further.into() })
     }
 
+    /// The files behind the first, and where they begin.
+    pub fn further(&self) -> Arc<[FurtherFile]> {
+        Arc::clone(&self.further)
+    }
+
     /// From the start of the first.
     ///
     /// # Errors

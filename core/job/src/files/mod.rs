@@ -38,6 +38,7 @@ pub use atomic_file::{AtomicFile, NullSink};
 pub use cl_input::ClInput;
 pub use cl_source::{ClSource, HeldText};
 pub use file_fault::FileFault;
+pub use joined::JoinedFiles;
 pub use json_rows::JsonRows;
 pub use outcome::TextOutcomes;
 pub use own_folder::{FolderMark, OwnFolder};

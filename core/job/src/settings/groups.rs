@@ -171,6 +171,13 @@ pub struct JobSettings {
     pub mark: Option<JobMark>,
 }
 
+impl JobSettings {
+    /// The CL files, in their order.
+    pub fn files(&self) -> impl Iterator<Item = &PathArg> {
+        std::iter::once(&self.input).chain(&self.reading.then)
+    }
+}
+
 settings! {
     /// What a run writes beside what it prints, and what it finds out of its programs.
     OutputSettings, None;

@@ -5,6 +5,7 @@ mod picture;
 use std::fmt::Write as _;
 
 use nalgebra::Vector3;
+use post_grammar::text::as_remark;
 use post_machine::axis_words;
 use post_machine::description::{LengthAxis, Machine, OptionValue, OutputUnits, ToolData};
 use post_posting::program::ToolChange;
@@ -26,8 +27,10 @@ struct SheetTable {
 pub struct SheetJob<'a> {
     /// The machine, as it is set up.
     pub machine: &'a Machine,
-    /// The CL file.
-    pub cl_file: &'a PathArg,
+    /// The CL files, in their order.
+    pub cl_files: Vec<&'a PathArg>,
+    /// What a program of chosen operations says of the others.
+    pub left_out: Option<String>,
     /// The work offset that the programs are in where the CL file names none; none where the operator chooses it.
     pub work_offset: Option<String>,
     /// What the programs rely on at the control, a sentence each.
@@ -36,23 +39,32 @@ pub struct SheetJob<'a> {
     pub ahead: &'a ProgramPreview,
 }
 
-/// The sheet of programs that were made of one CL file.
+impl SheetJob<'_> {
+    /// The names of the CL files.
+    fn names(&self) -> Vec<String> {
+        let names = self.cl_files.iter().filter_map(|file| file.path()?.file_name());
+        names.map(|name| name.to_string_lossy().into_owned()).collect()
+    }
+}
+
+/// The sheet of programs that were made of CL files.
 pub fn text(
     sheet: &PathArg,
     job: &SheetJob<'_>,
     programs: &[(&PathArg, &PostingReport)],
 ) -> String {
-    let SheetJob { machine, cl_file, ahead, .. } = *job;
-    let title = match cl_file.path().and_then(|path| path.file_name()) {
-        Some(name) => format!("Setup: {}", name.to_string_lossy()),
-        None => "Setup".to_owned(),
+    let SheetJob { machine, ahead, .. } = *job;
+    let names = job.names().join(", ");
+    let title = match names.is_empty() {
+        true => "Setup".to_owned(),
+        false => format!("Setup: {names}"),
     };
     let sections = [
         the_machine(job, programs),
         the_programs(programs),
         the_tools(machine, ahead, programs),
         the_operations(job),
-        for_the_operator(ahead),
+        for_the_operator(job),
         the_axes(programs),
         what_holds_at_the_control(job),
         the_options(machine),
@@ -70,6 +82,9 @@ fn the_machine(job: &SheetJob<'_>, programs: &[(&PathArg, &PostingReport)]) -> S
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
     row("Machine", machine.name.clone());
+    if let Some(left_out) = &job.left_out {
+        row("The program", left_out.clone());
+    }
     row(
         "Control",
         format!("{}, {} keeps the tip", machine.control.dialect, machine.control.tcp.name()),
@@ -273,15 +288,18 @@ fn the_operations(job: &SheetJob<'_>) -> SheetTable {
 }
 
 /// What the CL file tells the operator.
-fn for_the_operator(ahead: &ProgramPreview) -> SheetTable {
+fn for_the_operator(job: &SheetJob<'_>) -> SheetTable {
+    // Where files are joined their names stand between them.
+    let joins: Vec<String> = job.names().into_iter().skip(1).map(as_remark).collect();
     let of = |(work, place): (&OperationWork, u32)| {
         let row = move |note: &String| vec![place.to_string(), note.clone()];
-        work.notes.iter().map(row).collect::<Vec<_>>()
+        let notes = work.notes.iter().filter(|note| !joins.contains(note));
+        notes.map(row).collect::<Vec<_>>()
     };
     SheetTable {
         title: "For the operator".to_owned(),
         head: vec!["Operation", "What the CL file says"],
-        rows: ahead.work.iter().zip(1..).flat_map(of).collect(),
+        rows: job.ahead.work.iter().zip(1..).flat_map(of).collect(),
     }
 }
 

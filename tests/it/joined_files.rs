@@ -101,8 +101,6 @@ fn what_a_file_leaves_in_force_is_named_anew_or_refused() {
     let with = [&named[..], &["--tool=7", "-q", "-o", "x.nc"]].concat();
     // The first loads one itself, and --tool is for files that load none.
     refused(folder, &with, &["the file loads tool 1 itself"]);
-    let split = ["-m", "vmc", "--tool-length=100", "a.apt", "--then=b.apt", "--split=tools"];
-    refused(folder, &split, &["without --then"]);
     let standard = ["-m", "vmc", "-", "--then=b.apt"];
     refused(folder, &standard, &["more than once"]);
 }
@@ -188,8 +186,21 @@ fn chosen_operations_become_the_program() {
     refused(folder, &verify, &["[missing]"]);
     let unknown = [&base[..], &["--operations=4", "-o", "y.nc"]].concat();
     refused(folder, &unknown, &["no operation 4", "1 ROUGH, 2 FINISH, 3 DRILL"]);
-    refused(folder, &[&base[..], &["--operations=1", "--split=tools"]].concat(), &["--split"]);
-    refused(folder, &["batch", "p.cls", "-m", "vmc", "--operations=1", "-o", "b.csv"], &["whole"]);
+    // A batch makes the same of them, of files that are joined too.
+    let batch = ["batch", "-m", "vmc", "--tool-length=100", "-q", "-o"];
+    let moves = |name: &str, more: &[&str]| {
+        good(folder, &[&batch[..], &[name], more].concat());
+        let table = fs::read_to_string(folder.join(name)).unwrap();
+        let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let head = lines.next().unwrap();
+        let place = head.iter().position(|column| *column == "moves").unwrap();
+        lines.map(|row| row[place].parse::<u32>().unwrap()).collect::<Vec<_>>()
+    };
+    assert_eq!(moves("b.csv", &["p.cls"]), [11]);
+    assert_eq!(moves("one.csv", &["p.cls", "--operations=1"]), [4]);
+    let jobs = "{\"file\": \"p.cls\", \"machine\": \"vmc\", \"then\": [\"p.cls\"], \"operations\": [\"DRILL\", \"1\"]}\n";
+    fs::write(folder.join("jobs.jsonl"), jobs).unwrap();
+    assert_eq!(moves("both.csv", &["jobs.jsonl"]), [10]);
 }
 
 /// A cut from the end of an operation that is left out would be a rapid into it.
@@ -201,4 +212,90 @@ fn a_cut_begins_in_the_program_or_is_refused() {
     good(folder.path(), &[&base[..], &["--operations=1", "--operations=2"]].concat());
     let alone = [&base[..], &["--operations=2"]].concat();
     refused(folder.path(), &alone, &["error[operation]", "p.cls:14:1", "the operation before it"]);
+}
+
+/// The sheet of a program is of what the program has: its files, and of these the operations that are chosen.
+#[test]
+fn the_setup_sheet_is_that_of_the_program() {
+    let folder =
+        folder(&[("paths.cls", PATHS), ("more.cls", &PATHS.replace("LOAD/TOOL,1", "LOAD/TOOL,3"))]);
+    let folder = folder.path();
+    let base = ["-m", "vmc", "--tool-length=100", "-q", "--setup-sheet=part.md", "-o", "part.nc"];
+    let job = ["paths.cls", "--then=more.cls", "--operations=FINISH"];
+    good(folder, &[&base[..], &job].concat());
+    let sheet = fs::read_to_string(folder.join("part.md")).unwrap();
+    assert_contains(
+        &sheet,
+        &["# Setup: paths.cls, more.cls", "WITHOUT OPERATIONS 1 ROUGH", "Y 5.000 to 5.000"],
+    );
+    for strange in ["| ROUGH", "| DRILL", "| T2", "For the operator"] {
+        assert!(!sheet.contains(strange), "{strange}: {sheet}");
+    }
+    assert_eq!(sheet.matches("| FINISH |").count(), 2, "{sheet}");
+    let clocks = |title: &str| {
+        let line = sheet.lines().find(|line| line.contains(title)).unwrap();
+        line.split('|').rev().map(str::trim).find(|cell| cell.ends_with(" s")).unwrap().to_owned()
+    };
+    let program = sheet.lines().find(|line| line.starts_with("| part.nc |")).unwrap();
+    assert!(program.contains(&clocks("Time without tool changes")), "{sheet}");
+}
+
+/// Files that are joined, and operations that are chosen of them, become programs of their own.
+#[test]
+fn joined_files_and_chosen_operations_are_split() {
+    let folder = folder(&[
+        ("paths.cls", PATHS),
+        ("b.apt", &FIRST.replace("UNITS/INCH\n", "UNITS/INCH\nTOOL PATH/LAST,TOOL,X\n")),
+    ]);
+    let folder = folder.path();
+    let base =
+        ["-m", "vmc", "--tool-length=100", "-q", "--verify", "--allow=FINI", "-o", "part.nc"];
+    let job = ["paths.cls", "--then=b.apt", "--split=operations"];
+    good(folder, &[&base[..], &job].concat());
+    let named = |name: &str, number: u32| {
+        let program = fs::read_to_string(folder.join(format!("part-{number}.nc"))).unwrap();
+        assert!(program.contains(&format!("({name})")), "{name} in\n{program}");
+        program
+    };
+    for (name, number) in [("ROUGH", 1), ("FINISH", 2), ("DRILL", 3)] {
+        named(name, number);
+    }
+    // The units at the head of the second file are those of its first operation.
+    assert!(named("LAST", 4).contains("X50.800"));
+    assert!(!named("DRILL", 3).contains("LAST"));
+    for number in 1..=4 {
+        fs::remove_file(folder.join(format!("part-{number}.nc"))).unwrap();
+    }
+    good(folder, &[&base[..], &job, &["--operations=DRILL", "--operations=LAST"]].concat());
+    named("DRILL", 1);
+    named("LAST", 2);
+    assert!(!folder.join("part-3.nc").exists());
+}
+
+/// An upright tool leaves the table free: a further file has it where it would have it alone.
+#[test]
+fn an_upright_file_has_its_table_as_it_begins_alone() {
+    let tilted = "UNITS/MM\nMULTAX\nLOADTL/1\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,50,0.5,0,0.8660254\nFEDRAT/100,MMPM\nGOTO/0,0,30,0.5,0,0.8660254\nGOTO/9,0,30,0.5,0,0.8660254\nGOTO/9,0,50,0.5,0,0.8660254\n";
+    let folder = folder(&[("tilted.apt", tilted), ("b.apt", SECOND)]);
+    let folder = folder.path();
+    let base = [
+        "-m",
+        "ac-trunnion",
+        "--tool-length=100",
+        "-q",
+        "--verify",
+        "--allow=FINI",
+        "-o",
+        "part.nc",
+    ];
+    good(folder, &[&base[..], &["b.apt"]].concat());
+    let words = |text: &str| {
+        let line = text.lines().rfind(|line| line.contains(" C") && line.contains('A'));
+        line.map(str::to_owned).unwrap_or_else(|| panic!("{text}"))
+    };
+    let alone = words(&fs::read_to_string(folder.join("part.nc")).unwrap());
+    good(folder, &[&base[..], &["tilted.apt", "--then=b.apt"]].concat());
+    let joined = fs::read_to_string(folder.join("part.nc")).unwrap();
+    assert_eq!(words(&joined), alone, "{joined}");
+    assert!(joined.contains("C90.000") || joined.contains("C270.000"), "{joined}");
 }

@@ -80,7 +80,7 @@ impl LineWindow {
                     return self.keep(command);
                 }
                 // Nothing of this range is made yet.
-                ProgramStep::Command(Command::Retract { .. }) => return,
+                ProgramStep::Command(Command::Retract { .. } | Command::Leave) => return,
                 ProgramStep::Command(
                     Command::Operation(_) | Command::Comment(_) | Command::Message(_),
                 ) => {}

@@ -323,6 +323,7 @@ impl<'a> BlockStage<'a> {
             Command::Tool(_)
             | Command::Home
             | Command::Retract { .. }
+            | Command::Leave
             | Command::WorkOffset(_)
             | Command::Smoothing(_) => self.depart(line, out),
             // Where the tool stands after it is not known.

@@ -24,6 +24,7 @@ mod trellis;
 mod whole_pass;
 
 use std::collections::VecDeque;
+use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
@@ -424,9 +425,14 @@ impl<'a> ConfigurationStage<'a> {
                 self.lengths.work_offset(*number);
                 self.park(&[]);
             }
-            Command::Subprogram(_) | Command::Smoothing(_) | Command::Retract { .. } => {
-                self.park(&[]);
+            Command::Retract { forgets: true } => {
+                let start = self.start_anew();
+                self.park(&start);
             }
+            Command::Subprogram(_)
+            | Command::Smoothing(_)
+            | Command::Retract { .. }
+            | Command::Leave => self.park(&[]),
             Command::SurfaceSpeed { most, .. } => {
                 self.speed = None;
                 match self.machine.spindle.limit(*most) {
@@ -443,6 +449,21 @@ impl<'a> ConfigurationStage<'a> {
             _ => {}
         }
         self.put(StreamItem::Command { line, command }, out);
+    }
+
+    /// Where a further file has the rotary axes as it begins: as a file of its own, at the full turn next to where they
+    /// stand. An upright tool leaves them there.
+    fn start_anew(&self) -> Vec<(usize, f64)> {
+        let stands = self.route.stands_at();
+        let axes = self.machine.axes.iter().enumerate();
+        let free = axes.filter(|(_, axis)| axis.joint.rotary && axis.indexed.is_none());
+        let start = free.map(|(joint, axis)| {
+            let start = self.machine.solution.start[joint];
+            let near = start + TAU * libm::round((stands[joint] - start) / TAU);
+            let inside = axis.travel.is_none_or(|[least, most]| (least..=most).contains(&near));
+            (joint, if inside { near } else { start })
+        });
+        start.collect()
     }
 
     /// The tool is retracted and axes are sent to positions of the machine: what comes after begins there.

@@ -369,6 +369,7 @@ impl<'a> EmitStage<'a> {
             Command::OptionalStop => Event::OptionalStop,
             Command::Home => return self.go_home(line),
             Command::Retract { forgets } => return self.apart(line, *forgets),
+            Command::Leave => return self.leave(line),
         };
         self.writer.push(line, event);
     }

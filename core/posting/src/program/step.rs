@@ -96,6 +96,8 @@ pub enum Command {
         /// They stay at rest until they are switched on; else they are as before once it comes near.
         forgets: bool,
     },
+    /// The tool is retracted, and comes near anew.
+    Leave,
 }
 
 impl Command {
@@ -106,6 +108,7 @@ impl Command {
             Self::Tool(_)
                 | Self::Home
                 | Self::Retract { .. }
+                | Self::Leave
                 | Self::From { .. }
                 | Self::Index { .. }
                 | Self::Head(_)

@@ -68,6 +68,8 @@ pub struct ClInterpreter {
     told_axis: Option<Vector3<f64>>,
     /// An index move came since the last move: see whether it agrees with `TLAXIS`.
     check_axis: bool,
+    /// The tool axis of the operation before the one that has not moved yet, unit vector, part frame.
+    axis_before: Option<Vector3<f64>>,
     /// Last point, mm, frame of the file.
     tip: Option<Vector3<f64>>,
     rapid: bool,
@@ -165,6 +167,7 @@ impl ClInterpreter {
             edge: Vector3::zeros(),
             told_axis: None,
             check_axis: false,
+            axis_before: None,
             tip: None,
             rapid: false,
             rapid_feed: false,
@@ -377,6 +380,10 @@ impl ClInterpreter {
         emit: &mut StepSink<'_>,
     ) {
         self.end_spline(record, emit);
+        if self.tip.is_some() {
+            self.axis_before.get_or_insert(self.frame.direction_to_part(self.axis));
+            self.due = true;
+        }
         // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
         self.axis = Vector3::z();
         self.tools.name = as_remark(tool.unwrap_or_default().to_owned());

@@ -1,10 +1,16 @@
 //! What must be in order before the tool moves and before it cuts: axis, tool, cutter, spindle.
 
+use std::f64::consts::FRAC_PI_4;
+
+use nalgebra::Vector3;
 use post_grammar::Record;
 use post_plugin::Spindle;
 
 use super::{ClInterpreter, DefaultSpindle, StepSink};
 use crate::program::{Command, ProgramStep};
+
+/// Tool axes farther apart are those of two faces of the part, radians: half of what is between two sides of a block.
+const OTHER_FACE: f64 = FRAC_PI_4;
 
 impl ClInterpreter {
     /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
@@ -47,7 +53,21 @@ impl ClInterpreter {
                 sense: self.spindle.sense,
             })));
         }
+        if let Some(axis) = self.axis_before.take() {
+            self.turn_over(axis, emit);
+        }
         self.due = false;
+    }
+
+    /// The first move of an operation: where it comes at rapid to another face of the part, the way of the CAM system
+    /// between the two is none that a tool could go, and the tool is retracted first. `axis` is that of the operation
+    /// before, part frame.
+    fn turn_over(&self, axis: Vector3<f64>, emit: &mut StepSink<'_>) {
+        let next = self.frame.direction_to_part(self.axis);
+        let rapid = self.rapid || self.rapid_feed || self.cycles.in_force.is_some();
+        if rapid && self.tip.is_some() && axis.dot(&next) < libm::cos(OTHER_FACE) {
+            emit(ProgramStep::Command(Command::Leave));
+        }
     }
 
     /// Another cutter was described, and no tool was loaded for it.

@@ -7,6 +7,7 @@
 mod axes;
 mod batch;
 #[cfg(target_os = "linux")]
+mod between;
 mod bounds;
 mod browser;
 mod calibrate;

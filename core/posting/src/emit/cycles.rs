@@ -12,7 +12,7 @@ use post_plugin::{Capabilities, Cycle, Event, Feed, ToolPose};
 
 use super::EmitStage;
 use crate::blocks::{BlockKind, MotionBlock};
-use crate::program::MoveFeed;
+use crate::program::{HoleCycle, MoveFeed};
 use crate::stream::{HoleMoves, StreamItem};
 
 /// A feed that differs by less is the same.
@@ -76,19 +76,11 @@ impl EmitStage<'_> {
 
     /// A hole, as a cycle or by its moves.
     pub(super) fn hole(&mut self, hole: &HoleMoves<MotionBlock>) {
-        let native = self.native(hole);
-        if native.is_none() && hole.cycle.alone {
-            // Of a hole that is out of travel moves are missing: that stands for itself.
-            if !self.findings.failed() || self.drills_along().is_none() {
-                self.findings.at(hole.line, not_here());
-            }
-            for _ in points(&hole.above).chain(points(&hole.into)) {
-                self.writer.place(self.writer.next());
-            }
-            return;
-        }
+        // On the way to it a tilted plane may begin, or end: what the control has there is known behind that.
+        let moves_alone = points(&hole.above).count() == hole.above.len();
+        let before = if moves_alone { self.native(hole) } else { None };
         // The control itself goes from hole to hole, if nothing else is on the way.
-        let goes_on = native.as_ref().is_some_and(|native| {
+        let goes_on = before.as_ref().is_some_and(|native| {
             self.cycle == Some(native.cycle) && self.stays_level(&hole.above, &native.cycle.level)
         });
         if goes_on {
@@ -96,6 +88,20 @@ impl EmitStage<'_> {
         } else {
             self.end_cycle(hole.line);
             self.elements(&hole.above);
+        }
+        let native = if moves_alone { before } else { self.native(hole) };
+        if native.is_none() && never_waits(&hole.cycle) && self.drills_along().is_some() {
+            self.findings.at(hole.line, waits_by_moves());
+        }
+        if native.is_none() && hole.cycle.alone {
+            // Of a hole that is out of travel moves are missing: that stands for itself.
+            if !self.findings.failed() || self.drills_along().is_none() {
+                self.findings.at(hole.line, not_here());
+            }
+            for _ in points(&hole.into) {
+                self.writer.place(self.writer.next());
+            }
+            return;
         }
         if self.spindle.waits.is_some() && native.is_some() {
             self.wake(hole.line);
@@ -162,7 +168,6 @@ impl EmitStage<'_> {
     fn stays_level(&self, above: &[StreamItem<MotionBlock>], level: &WordValues) -> bool {
         points(above)
             .all(|block| block.kind == BlockKind::Rapid && self.across_alone(&block.words, level))
-            && above.len() == points(above).count()
     }
 
     /// Two sets of words differ in those across the tool alone.
@@ -188,10 +193,9 @@ impl EmitStage<'_> {
         let machine = self.machine;
         let drilling = &hole.cycle;
         let place = self.drills_along()?;
-        // No control waits at the bottom in these.
-        let waits = drilling.dwell.is_some_and(|dwell| dwell > 0.0);
-        let never = matches!(drilling.kind, Cycle::Deep | Cycle::BreakChip | Cycle::Bore);
-        if waits && (never || self.writer.knows(Capabilities::CYCLE_NO_DWELL)) {
+        if never_waits(drilling)
+            || drilling.waits() && self.writer.knows(Capabilities::CYCLE_NO_DWELL)
+        {
             return None;
         }
         let level = points(&hole.above).last()?;
@@ -338,6 +342,21 @@ impl EmitStage<'_> {
         }
         Some(Feed::PerMinute(feed))
     }
+}
+
+/// A hole with a wait at the bottom, which dialects are not asked to write as a cycle of its kind.
+fn never_waits(drilling: &HoleCycle) -> bool {
+    let never = matches!(drilling.kind, Cycle::Deep | Cycle::BreakChip | Cycle::Bore);
+    never && drilling.waits()
+}
+
+/// A hole whose cycle has no wait.
+fn waits_by_moves() -> Diagnostic {
+    Diagnostic::warning(
+        "cycle",
+        "a wait at the bottom of a hole that is pecked or bored: it is made by moves, not by the control's cycle",
+    )
+    .help("without DWELL in its CYCLE the control's own is written")
 }
 
 fn points(stream: &[StreamItem<MotionBlock>]) -> impl Iterator<Item = &MotionBlock> {

@@ -63,6 +63,13 @@ pub struct HoleCycle {
     pub alone: bool,
 }
 
+impl HoleCycle {
+    /// The tool waits at the bottom.
+    pub fn waits(&self) -> bool {
+        self.dwell.is_some_and(|dwell| dwell > 0.0)
+    }
+}
+
 /// One leg of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CycleLeg {

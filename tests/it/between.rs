@@ -1,0 +1,106 @@
+//! What stands between two cuts: the way to another face of the part, and holes that begin in another direction.
+
+use std::fs;
+
+use crate::common::{Run, post};
+
+/// Posts a CL file with these further arguments; the program, or what was said.
+fn posted(cl: &str, more: &[&str]) -> (Run, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [cl_file, nc] = ["part.cls", "part.nc"].map(path);
+    fs::write(&cl_file, cl).unwrap();
+    let run = post(&[&["-q", "--verify", "--tool-length=100", "-o", &nc, &cl_file], more].concat());
+    let text = fs::read_to_string(&nc).unwrap_or_default();
+    (run, text)
+}
+
+/// Two operations of one tool, the second from the side.
+const SIDES: &str = "\
+TOOL PATH/A,TOOL,T1
+LOAD/TOOL,1,ADJUST,1
+SPINDL/RPM,600,CLW
+COOLNT/FLOOD
+RAPID
+GOTO/0,0,60,0,0,1
+FEDRAT/MMPM,600
+GOTO/0,0,20
+GOTO/0,30,20
+GOTO/0,0,60
+END-OF-PATH
+TOOL PATH/B,TOOL,T1
+RAPID
+GOTO/0,-100,10,0,-1,0
+FEDRAT/MMPM,600
+GOTO/0,-50,10
+GOTO/0,-50,20
+RAPID
+GOTO/0,-100,10
+END-OF-PATH
+FINI
+";
+
+/// Under a kept tip the way from one side to the other would lead through the edge between them.
+#[test]
+fn the_tool_is_retracted_between_operations_on_two_sides() {
+    for tcp in ["control", "post"] {
+        let job = ["-m", "dmu50", "--set=control.planes=false", "--tcp", tcp];
+        let (run, text) = posted(SIDES, &job);
+        assert_eq!(run.code, 0, "{tcp}: {}", run.err);
+        let second = text.split("* - B").nth(1).unwrap();
+        let turn = second.find("B+90").unwrap();
+        let retract = second.find("Z-100.000 R0 FMAX M91").unwrap();
+        assert!(retract < turn, "{tcp}: {text}");
+        // What runs stays on: it is the same tool.
+        assert!(!second[..turn].contains("M5") && !second[..turn].contains("M9"), "{text}");
+        // No farther apart than faces are: the way of the CAM system.
+        let near = SIDES.replace("GOTO/0,-100,10,0,-1,0", "GOTO/0,-100,10,0,-0.5,0.8660254");
+        let (run, text) = posted(&near, &job);
+        assert_eq!(run.code, 0, "{tcp}: {}", run.err);
+        let second = text.split("* - B").nth(1).unwrap();
+        assert!(second.find("M91").unwrap() > second.find("B+30").unwrap(), "{text}");
+    }
+}
+
+/// The first hole of each direction is the control's cycle like those behind it, a thread among them.
+#[test]
+fn a_cycle_goes_on_in_another_direction() {
+    let holes = |cycle: &str| {
+        format!(
+            "TOOL PATH/A,TOOL,T1\nLOAD/TOOL,1,ADJUST,1\nSPINDL/RPM,600,CLW\nRAPID\n{cycle}\nGOTO/0,0,0,0,0,1\nGOTO/20,0,0,0,0,1\n\
+             GOTO/0,-50,-20,0,-1,0\nGOTO/20,-50,-20,0,-1,0\nGOTO/50,0,-20,1,0,0\nCYCLE/OFF\nRAPID\nGOTO/100,0,60\nEND-OF-PATH\nFINI\n"
+        )
+    };
+    let drill = holes("CYCLE/DRILL,RAPTO,3,FEDTO,-12,MMPM,120,RTRCTO,20");
+    let tap = holes("CYCLE/TAP,RAPTO,3,FEDTO,-12,MMPM,600,RTRCTO,20");
+    for (dialect, drills, taps) in [("fanuc", "G81", "G84"), ("heidenhain", "M99", "M99")] {
+        for (cl, word, count) in [(&drill, drills, 3), (&tap, taps, 3)] {
+            let job = ["-m", "ac-trunnion", "--dialect", dialect, "--tcp", "control"];
+            let (run, text) = posted(cl, &job);
+            assert_eq!(run.code, 0, "{dialect}: {}", run.err);
+            let count = if dialect == "heidenhain" { 5 } else { count };
+            assert_eq!(text.matches(word).count(), count, "{text}");
+            assert!(!text.contains("G1 ") && !text.contains(" F120\n"), "{text}");
+        }
+    }
+}
+
+/// Facts of templates at the beginning of an operation: the tool that comes with it, and its feed whatever F counts.
+#[test]
+fn an_operation_is_told_its_tool_and_its_feed() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = folder.path().join("own.toml");
+    fs::write(
+        &machine,
+        "extends = \"ac-trunnion\"\n[program]\nbefore_operation = \"(OP {{operation.number}} T{{tool.number}} F{{operation.feed|round}})\"\n",
+    )
+    .unwrap();
+    let machine = machine.to_str().unwrap();
+    let cl = "TOOL PATH/A,TOOL,T1\nLOAD/TOOL,1,ADJUST,1\nSPINDL/RPM,600,CLW\nRAPID\nGOTO/0,0,60,0,0,1\nFEDRAT/MMPM,600\nGOTO/0,0,40,0,0,1\nGOTO/0,20,40,0,0.1,0.994987\nRAPID\nGOTO/0,20,60\nEND-OF-PATH\nTOOL PATH/B,TOOL,T2\nLOAD/TOOL,2,ADJUST,2\nSPINDL/RPM,600,CLW\nRAPID\nGOTO/0,0,60,0,0,1\nFEDRAT/MMPM,300\nGOTO/0,0,40\nGOTO/0,20,40\nRAPID\nGOTO/0,20,60\nEND-OF-PATH\nFINI\n";
+    let (run, text) =
+        posted(cl, &["-m", machine, "--tcp", "post", "--set=control.feed=inverse-time"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    for told in ["(OP 1 T1 F600.0)", "(OP 2 T2 F300.0)"] {
+        assert!(text.contains(told), "{told}: {text}");
+    }
+}

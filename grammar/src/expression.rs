@@ -1,5 +1,7 @@
 //! The expressions that stand for numbers in a machine file. Angles are in degrees.
 
+mod bounds;
+
 use crate::fault::SyntaxFault;
 use pest::Parser;
 use pest::error::InputLocation;
@@ -10,6 +12,8 @@ use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 use std::sync::LazyLock;
+
+pub use bounds::Bounds;
 
 #[derive(Parser)]
 #[grammar = "expression.pest"]

@@ -4,7 +4,8 @@
 //! The language is that of the pest grammar `line.pest`; a hand-written scanner gives the same for every usual line
 //! and leaves the others to pest, which reads them or says what is wrong.
 //! An NC program becomes blocks ([`nc`]).
-//! The structural code of a machine ([`parse_chain`]), the expressions in its file ([`parse_expression`]) and the lines
+//! The structural code of a machine ([`parse_chain`]), the expressions in its file ([`parse_expression`]), what must
+//! hold between its axes ([`parse_inequality`]) and the lines
 //! of a program that it has for words of the CL file ([`Template`]) have grammars of their own.
 
 mod chain;
@@ -12,6 +13,7 @@ mod cl;
 mod decimal;
 mod expression;
 mod fault;
+mod inequality;
 mod layout;
 pub mod nc;
 mod template;
@@ -19,8 +21,9 @@ pub mod text;
 
 pub use chain::{Link, LinkKind, parse_chain};
 pub use cl::*;
-pub use expression::{EvaluationFault, Expression, FUNCTIONS, parse_expression};
+pub use expression::{Bounds, EvaluationFault, Expression, FUNCTIONS, parse_expression};
 pub use fault::{ReadError, SyntaxFault};
+pub use inequality::{Inequality, parse_inequality};
 pub use template::{FillFault, Template};
 
 /// What tests look into; no part of the crate's face.

@@ -10,6 +10,7 @@ mod exclusive;
 mod heads;
 mod indexed;
 mod leave;
+mod limits;
 mod quill;
 mod zero;
 

@@ -4,6 +4,7 @@ use crate::accuracy::{LineariseError, PlacementError};
 use crate::program::StraightMove;
 use post_machine::axis_words;
 use post_machine::axis_words::AxisWords;
+use post_machine::dependent_limit::DependentLimit;
 use post_machine::description::{Axis, Machine, Positions, Tcp, TextPlace};
 use post_machine::diagnostic::{Diagnostic, LimitExcess, Short};
 use post_machine::kinematics::travel::OverTravel;
@@ -175,9 +176,31 @@ pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic
     }
 }
 
+/// Keys of [`LimitExcess`] beyond those of the ends of axes: the limits of a machine that depend on other axes.
+const LIMITS: u64 = 1 << 32;
+
 /// What to do about a linear axis that leaves its travel.
 pub(crate) const FINDS_A_MOUNT: &str =
     "`post place CL-FILE --machine MACHINE` finds the --mount that fits, or says why there is none";
+
+/// A limit that depends on other axes is passed at `joints`; `behind` says when.
+pub(crate) fn beyond_limit(
+    machine: &Machine,
+    limit: &DependentLimit,
+    joints: &Joints,
+    behind: &str,
+) -> Diagnostic {
+    let (told, by) = (limit.told(machine, joints), limit.excess(joints));
+    let place = machine.limits.iter().position(|other| other == limit).unwrap_or_default();
+    Diagnostic::error("over-travel", format!("{told}{behind}"))
+        .extreme(LimitExcess {
+            key: LIMITS + place as u64,
+            by,
+            value: format!("{}, passed by {by:.3},", limit.stance(machine, joints)),
+            remedy: String::new(),
+        })
+        .help("another set-up of the part (--mount), another side ([solution] prefer), or a retract before the axes turn")
+}
 
 /// `312.400 mm, its limit is 300.000 mm, passed by 12.400 mm`.
 pub(crate) fn beyond(machine: &Machine, over: &OverTravel) -> String {
@@ -311,6 +334,11 @@ pub(crate) fn no_way(
                 axis.name,
                 rotary(joints)
             ),
+            Ok(joints)
+                if let Some(limit) = machine.limits.iter().find(|limit| !limit.holds(joints)) =>
+            {
+                format!("going on to {}: {}", rotary(joints), limit.told(machine, joints))
+            }
             Ok(joints) if *same => format!(
                 "{} lies on the same branch, but no path of the axes keeps the tolerance",
                 rotary(joints)

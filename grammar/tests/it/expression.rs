@@ -1,6 +1,6 @@
 //! Expressions of a machine file.
 
-use post_grammar::parse_expression;
+use post_grammar::{parse_expression, parse_inequality};
 use post_testkit::randomised;
 
 fn name(name: &str) -> Option<f64> {
@@ -137,4 +137,97 @@ fn any_text_is_read_or_refused() {
             Err(fault) => assert!(text.get(fault.span).is_some(), "{text:?}"),
         }
     }
+}
+
+/// Formulas of two names, each with its own trap: kinks, poles, waves, whole and broken powers, a name that stands twice.
+const OF_TWO: [&str; 16] = [
+    "a + 2 * b - 3",
+    "a * b",
+    "a / (b + 20)",
+    "a - a * b",
+    "-abs(a) + abs(b - 3)",
+    "min(a, b, 1) - max(b, 2, -a)",
+    "sin(20 * a) + cos(33 * b)",
+    "tan(4 * a)",
+    "a^2 - b^3 + a^0",
+    "(a + 11)^b",
+    "2^(a / 10)",
+    "sqrt(a + b + 20)",
+    "asin(a / 10) - acos(b / 10)",
+    "atan(a) * atan2(b, a)",
+    "atan2(a + 10.5, b)",
+    "(a - b)^4",
+];
+
+#[test]
+fn bounds_hold_for_all_values_between_those_of_the_names_and_close_in_on_them() {
+    let (rounds, mut random) = randomised(4000, 2);
+    'boxes: for _ in rounds {
+        let text = OF_TWO[random.pick(OF_TWO.len())];
+        let expression = parse_expression(text).expect("it can be read");
+        let width = random.order(-7.0, 1.0);
+        let boxes = [0, 1].map(|_| {
+            let least = random.range(-10.0, 10.0 - width);
+            [least, least + width]
+        });
+        let [least, most] =
+            expression.bounds(&|name| Some(if name == "a" { boxes[0] } else { boxes[1] }));
+        let mut values = Vec::new();
+        for _ in 0..20 {
+            let [a, b] = boxes.map(|[least, most]| match random.pick(4) {
+                0 => least,
+                1 => most,
+                _ => random.range(least, most),
+            });
+            let value = expression.evaluate(&|name| Some(if name == "a" { a } else { b }));
+            let Ok(value) = value else {
+                // Somewhere it has no value: nothing is known.
+                assert!(least == f64::NEG_INFINITY && most == f64::INFINITY, "{text} {boxes:?}");
+                continue 'boxes;
+            };
+            values.push(value);
+            let rounding = 1e-9 * (1.0 + value.abs());
+            let held = least - rounding <= value && value <= most + rounding;
+            assert!(held, "{text} of {a}, {b} in {boxes:?}: {value} outside {least} to {most}");
+        }
+        // Of small boxes bounds are small: on a pole, or where the angle jumps, they are not.
+        if width < 1e-6 && least.is_finite() && !text.starts_with("atan") {
+            let steep = values.iter().fold(1.0, |most: f64, value| most.max(value.abs()));
+            assert!(most - least < 1e-2 * steep * steep, "{text} in {boxes:?}: {least} to {most}");
+        }
+    }
+}
+
+#[test]
+fn an_inequality_is_two_expressions_and_one_sign() {
+    let name = |name: &str| (name == "B").then_some(30.0);
+    for (text, sides, margin, sign) in [
+        ("-240 > -300 + 2 * abs(B)", [-240.0, -240.0], 0.0, "≥"),
+        ("B <= 20", [30.0, 20.0], -10.0, "≤"),
+        ("10<B", [10.0, 30.0], 20.0, "≤"),
+        (" B >= 29 ", [30.0, 29.0], 1.0, "≥"),
+    ] {
+        let inequality = parse_inequality(text).expect(text);
+        assert_eq!(inequality.sides(&name), Ok(sides), "{text}");
+        assert_eq!(inequality.margin(sides), margin, "{text}");
+        assert_eq!(inequality.sign(), sign, "{text}");
+    }
+    for (text, span, message) in [
+        ("Z + 1", 5..5, "one of > >= < <= is missing"),
+        ("1 < B < 2", 6..7, "one comparison is possible"),
+        ("Z > 2 +", 7..7, "a number or a name is missing at the end"),
+        ("Z) > 2", 1..2, "this `)` closes nothing"),
+        ("Z > foo(2)", 4..7, "there is no function `foo`"),
+    ] {
+        let fault = parse_inequality(text).expect_err(text);
+        assert_eq!((fault.span, fault.message.as_str()), (span, message), "{text}");
+        assert_eq!(fault.text, text);
+    }
+    let text = "Z > zero + 2 * abs(B)";
+    let inequality = parse_inequality(text).expect(text);
+    let names = inequality.references().into_iter();
+    let names: Vec<_> =
+        names.map(|(span, name)| (text[span].to_owned(), name.to_owned())).collect();
+    let both = |name: &str| (name.to_owned(), name.to_owned());
+    assert_eq!(names, ["Z", "zero", "B"].map(both));
 }

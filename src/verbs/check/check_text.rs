@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use post_job::summary::warnings;
 use post_job::text_table::NamedValues;
 use post_machine::check::{
-    AxisLine, AxisReadout, Check, Comparison, DifferenceShare, DirectionSolutions, MachineClass,
-    Pole, ReachableCone, Sign, Volume, number,
+    AxisLine, AxisReadout, Check, Comparison, DifferenceShare, DirectionSolutions, LimitReport,
+    LimitRoom, MachineClass, Pole, ReachableCone, Sign, Volume, number,
 };
 
 /// Width of the names.
@@ -35,6 +35,9 @@ pub fn check(check: &Check) -> String {
     rows.row("singular", &check.poles.told);
     for at in &check.poles.at {
         rows.row("", pole(at));
+    }
+    for limit in &check.limits {
+        dependent_limit(&mut rows, limit);
     }
     if let Some(space) = &check.volume {
         volume(&mut rows, space, check.tool_length_mm);
@@ -259,6 +262,23 @@ fn pole(pole: &Pole) -> String {
         "out of travel".to_owned()
     };
     format!("({x}, {y}, {z}){others}: {state}")
+}
+
+fn dependent_limit(rows: &mut NamedValues, limit: &LimitReport) {
+    rows.row("limit", &limit.keep);
+    for LimitRoom { with, room } in &limit.rooms {
+        let with = match with {
+            Some(other) => format!("{} {}: ", other.axis, number(other.value, 3)),
+            None => String::new(),
+        };
+        let room = match room {
+            Some([least, most]) => {
+                format!("{} to {} {}", number(*least, 3), number(*most, 3), limit.unit)
+            }
+            None => "nowhere".to_owned(),
+        };
+        rows.row("", format_args!("{with}{} {room}", limit.axis));
+    }
 }
 
 fn volume(rows: &mut NamedValues, volume: &Volume, length: f64) {

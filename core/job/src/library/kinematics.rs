@@ -227,7 +227,7 @@ impl MachineKinematics {
         Ok(Solutions { width, q, counts })
     }
 
-    /// The same solution on the turns nearest to `near` that are inside travel; none if there are none.
+    /// The same solution on the turns nearest to `near` that are inside travel and the limits of the machine; none if there are none.
     fn inside(&self, mut joints: Joints, near: &Joints) -> Option<Joints> {
         for ((axis, value), near) in self.machine.axes.iter().zip(&mut joints).zip(near) {
             if axis.joint.rotary {
@@ -244,7 +244,8 @@ impl MachineKinematics {
                 return None;
             }
         }
-        Some(joints)
+        let within = self.machine.limits.iter().all(|limit| limit.holds(&joints));
+        within.then_some(joints)
     }
 
     /// How far the tool is, at `shares` of moves that take all axes linearly from and to axis values, from the straight

@@ -1,17 +1,19 @@
-//! Axes that a program takes beyond their travel.
+//! Axes that a program takes beyond their travel, and limits between axes that it passes.
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_readback::BlockEffect;
-use post_readback::verify::over_travel;
+use post_readback::verify::{LimitCheck, PassedLimit, over_travel};
 
-/// Of each end of each axis the farthest.
+/// Of each end of each axis, and of each limit that depends on other axes, the farthest.
 #[derive(Debug, Default)]
 pub struct BeyondTravel {
     found: Vec<Beyond>,
+    /// What must hold between the axes.
+    limits: LimitCheck,
 }
 
-/// An axis beyond one end.
+/// An axis beyond one end, or a limit that depends on other axes.
 #[derive(Debug)]
 struct Beyond {
     axis: String,
@@ -27,11 +29,17 @@ impl BeyondTravel {
         let BlockEffect::Motion(motion) = done else {
             return;
         };
-        let Some((message, by)) = over_travel(machine, motion) else {
-            return;
-        };
-        let axis = message.split(' ').next().unwrap_or_default().to_owned();
-        let beyond = Beyond { axis, message, by, line: motion.line, count: 1 };
+        if let Some(PassedLimit { message, by, limit }) = self.limits.passed(machine, motion) {
+            let axis = format!("[[limit]] {limit}");
+            self.keep(Beyond { axis, message, by, line: motion.line, count: 1 });
+        }
+        if let Some((message, by)) = over_travel(machine, motion) {
+            let axis = message.split(' ').next().unwrap_or_default().to_owned();
+            self.keep(Beyond { axis, message, by, line: motion.line, count: 1 });
+        }
+    }
+
+    fn keep(&mut self, beyond: Beyond) {
         match self.found.iter_mut().find(|found| found.axis == beyond.axis) {
             None => self.found.push(beyond),
             Some(found) => {

@@ -8,6 +8,7 @@
 mod class;
 mod commission;
 mod leaving;
+mod limits;
 mod nominal;
 mod pointing;
 mod probe;
@@ -22,6 +23,7 @@ use serde::Serialize;
 
 pub use class::{AxisLine, MachineClass};
 pub use commission::{Commission, CommissionMove};
+pub use limits::{LimitReport, LimitRoom};
 pub use nominal::{Comparison, DifferenceShare, Differing, compare};
 pub use pointing::{AxisReadout, DirectionSolutions, Pole, Poles, WayOfPointing};
 pub use reach::{DirectionMap, ReachableCone};
@@ -54,6 +56,9 @@ pub struct Check {
     pub leaves: Option<String>,
     /// What each axis does, a line an axis and direction.
     pub signs: Vec<Sign>,
+    /// What limits that depend on other axes leave of the travel.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub limits: Vec<LimitReport>,
     /// The solutions for one direction, written out.
     pub typical: Option<DirectionSolutions>,
     /// Directions that can be made in no single way.
@@ -82,7 +87,9 @@ impl Check {
         let reach = ReachableCone::of(&probe);
         let volume = Volume::of(&probe);
         let round_trip = RoundTrip::of(&probe);
-        let warnings = warnings(&probe, &reach, volume.as_ref(), &round_trip);
+        let mut warnings = warnings(&probe, &reach, volume.as_ref(), &round_trip);
+        let (limits, wrong) = limits::told(&probe);
+        warnings.extend(wrong);
         let typical = pointing::typical(&probe);
         let poles = Poles::of(&probe);
         Ok(Self {
@@ -100,6 +107,7 @@ impl Check {
             not_known: machine.profile.not_known(),
             leaves: leaving::told(machine),
             signs: signs::table(&probe),
+            limits,
             typical,
             poles,
             reach,

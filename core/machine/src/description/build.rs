@@ -316,6 +316,7 @@ impl Builder<'_> {
         };
         self.seconds(file, &mut axes);
         self.servos(file, &mut axes);
+        let limits = self.dependent_limits(&file.limit, &axes);
         let mount = file.workpiece.mount.as_ref();
         let mount = mount.map_or_else(Vector3::zeros, |mount| self.vector(mount));
         let turn = self.checked(&file.workpiece.turn).unwrap_or(0.0).to_radians();
@@ -351,6 +352,7 @@ impl Builder<'_> {
             name: file.name.get_ref().clone(),
             control: self.control(file.control.get_ref(), &axes, options, own.arcs),
             axes,
+            limits,
             mount,
             mount_said: file.workpiece.mount.is_some(),
             given_travel: Vec::new(),
@@ -521,7 +523,7 @@ impl Builder<'_> {
     }
 
     /// A table with an entry at each of `spans`.
-    fn check_size(
+    pub(super) fn check_size(
         &mut self,
         what: &str,
         mut spans: impl ExactSizeIterator<Item = Range<usize>>,

@@ -24,6 +24,9 @@ pub(super) const MOST_BODIES: usize = 100;
 /// Options of one plugin.
 pub(super) const MOST_OPTIONS: usize = 200;
 
+/// Limits that depend on other axes: each is held on every way.
+pub(super) const MOST_AXIS_LIMITS: usize = 32;
+
 /// Groups of axes that exclude one another.
 pub(super) const MOST_GROUPS: usize = 32;
 

@@ -8,6 +8,7 @@ mod bounds;
 mod build;
 mod choice;
 mod cl_words;
+mod dependent;
 mod echoes;
 mod file;
 mod frame;
@@ -67,6 +68,7 @@ pub use solids::Solid;
 pub use spindle::SpindleSpeeds;
 pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 
+use crate::dependent_limit::DependentLimit;
 use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
 use crate::servo::Servo;
@@ -87,6 +89,8 @@ pub struct Machine {
     pub name: String,
     /// Axes in chain order, from the workpiece to the tool.
     pub axes: Vec<Axis>,
+    /// What must hold between the axes, beside the travel of each.
+    pub limits: Vec<DependentLimit>,
     /// Where the part origin sits with all axes at zero, mm, machine frame.
     pub mount: Vector3<f64>,
     /// The machine file, or the job, says where the part sits.
@@ -488,7 +492,8 @@ impl Machine {
     pub fn part_sits_anywhere(&self) -> bool {
         let plain =
             |axis: &Axis| !axis.joint.rotary && axis.second.is_none() && axis.indexed.is_none();
-        !self.mount_said && self.heads.is_empty() && self.axes.iter().all(plain)
+        let alone = self.heads.is_empty() && self.limits.is_empty();
+        !self.mount_said && alone && self.axes.iter().all(plain)
     }
 
     /// The machine with its travel opened, where the part may sit anywhere: the way of the whole program is held against it

@@ -122,6 +122,18 @@ impl<'a> TcpBlock<'a> {
         self.linear.joints
     }
 
+    /// Axis values at a share of the block, mm and radians; none where the linear axes cannot follow. `solver` is that of
+    /// [`TcpBlock::new`].
+    pub fn joints_at(&self, solver: &Solver, share: f64) -> Option<Joints> {
+        let mut joints: Joints =
+            std::array::from_fn(|index| self.from.joints[index] + share * self.steps[index]);
+        let turns = self.chain.turns(&joints);
+        let axis = self.chain.pose(&joints, &turns).axis;
+        let tip = self.tips[0] + (self.tips[1] - self.tips[0]) * share;
+        solver.place(tip + axis * self.along, &mut joints, &turns).ok()?;
+        Some(joints)
+    }
+
     /// A bound on the second derivative of every linear axis, mm: from norms, cheap. Infinite where rotary axes stand
     /// between the linear ones.
     ///

@@ -82,7 +82,7 @@ impl StreamItem<MotionBlock> {
 /// What the stage that makes blocks says of those from there on.
 #[derive(Clone, Debug)]
 pub enum BlockNote {
-    /// What solves their points, for the stage that plans feeds.
+    /// What solves their points, for the stage that plans feeds and the limits that depend on other axes.
     Placer(Rc<Placer>),
     /// Their words are those of this tilted plane, the tool having left the part; none: of no plane.
     Plane(Option<Box<TiltedPlane>>),

@@ -206,6 +206,10 @@ impl<'a> BlockStage<'a> {
 
     /// Blocks from here on are made with another placer, which goes on to whom it serves after this stage.
     fn use_placer(&mut self, line: u64, placer: Rc<Placer>, out: &mut BlockSink<'_>) {
+        // The last stage holds axes to limits that depend on other axes.
+        if !self.plans && !self.machine.limits.is_empty() {
+            out.note(line, BlockNote::Placer(placer.clone()));
+        }
         self.placer = Some(match self.plans {
             false => placer,
             true => {

@@ -6,6 +6,7 @@ use super::trellis::{ArrivalKind, TrellisState, pose};
 use crate::accuracy::PlacementError;
 use crate::program::{MoveFeed, StraightMove};
 use crate::refusal;
+use post_machine::dependent_limit::DependentLimit;
 use post_machine::description::Positions;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::travel::{AT_END, passed};
@@ -41,7 +42,8 @@ impl Route<'_> {
             }
         };
         if kind != ArrivalKind::Cut {
-            return Err(DroppedPoint::Point(self.over_travel(&found)));
+            let limit = self.passed_limit(motion);
+            return Err(DroppedPoint::Point(limit.unwrap_or_else(|| self.over_travel(&found))));
         }
         if self.machine.rewind.is_some() && self.try_rewind(line, motion) {
             return Ok(());
@@ -189,7 +191,8 @@ impl Route<'_> {
             }
             for stand in &stands {
                 axes.turned(stand, &state.joints, &mut |joints| {
-                    if axes.largest_turn(&state.joints, joints) > 1e-6 {
+                    let turns = axes.largest_turn(&state.joints, joints) > 1e-6;
+                    if turns && axes.within_limits(joints) {
                         added.push((place, stand.branch, *joints));
                     }
                 });
@@ -236,6 +239,39 @@ impl Route<'_> {
         refusal::refused(self.machine, &refused).boxed()
     }
 
+    /// The fault of a point at which every solution inside travel passes a limit that depends on other axes: that of the
+    /// one which passes it least.
+    fn passed_limit(&self, motion: &StraightMove) -> Option<Box<Diagnostic>> {
+        let axes = &self.trellis.axes;
+        let mut least: Option<(f64, &DependentLimit, Joints)> = None;
+        let mut held = !axes.has_limits();
+        if held {
+            return None;
+        }
+        let last = self
+            .trellis
+            .best()
+            .map_or(self.machine.solution.start, |index| self.trellis.states[index].joints);
+        let mut stands = Vec::new();
+        let placer = &self.settings[self.setting].1;
+        axes.stands(placer.solver(), &pose(motion), &last, &both, &mut stands).ok()?;
+        for stand in &stands {
+            axes.turned(stand, &last, &mut |joints| {
+                let mut passed = self.machine.limits.iter().filter(|limit| !limit.holds(joints));
+                let Some(limit) = passed.next() else {
+                    held = true;
+                    return;
+                };
+                let by = limit.excess(joints);
+                if least.as_ref().is_none_or(|(least, ..)| by < *least) {
+                    least = Some((by, limit, *joints));
+                }
+            });
+        }
+        let (_, limit, joints) = least.filter(|_| !held)?;
+        Some(refusal::beyond_limit(self.machine, limit, &joints, "").boxed())
+    }
+
     /// The fault of a cut that cannot go on: what each solution would have asked for.
     fn no_way(&self, motion: &StraightMove, found: &SolutionSummary) -> Box<Diagnostic> {
         let placer = &self.settings[self.setting].1;
@@ -248,6 +284,9 @@ impl Route<'_> {
         if let Some(meeting) = meeting.filter(|at| at.miss > self.machine.accuracy.tolerance) {
             let refused = PlacementError::Unreachable(Unreachable::Plane { miss: meeting.miss });
             return refusal::refused(self.machine, &refused).boxed();
+        }
+        if let Some(limit) = self.passed_limit(motion) {
+            return limit;
         }
         let mut stands = Vec::new();
         let axes = &self.trellis.axes;

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::metric::wrong_side;
+use post_machine::dependent_limit::DependentLimit;
 use post_machine::description::{Machine, Positions, Side};
 use post_machine::kinematics::choose::RotaryTravel;
 use post_machine::kinematics::orientation::{Branches, angle};
@@ -28,6 +29,8 @@ pub(crate) struct ChoiceAxes {
     /// zero counts.
     pub(super) endless: u8,
     linear: Vec<RotaryTravel>,
+    /// What must hold between the axes.
+    limits: Vec<DependentLimit>,
     /// Joints that move off the part alone.
     pub(super) indexed: Vec<usize>,
     pub(super) axis_tolerance: f64,
@@ -142,6 +145,7 @@ impl ChoiceAxes {
             turning,
             endless: endless & !sided,
             linear,
+            limits: machine.limits.clone(),
             indexed,
             axis_tolerance: machine.accuracy.axis_tolerance,
             freedom,
@@ -297,7 +301,9 @@ impl ChoiceAxes {
             return None;
         }
         let mut joints = self.carried(&stand, last).ok()?;
-        let still = !self.near_end(last, &joints, way) && self.stand_still(last, &mut joints);
+        let still = !self.near_end(last, &joints, way)
+            && self.stand_still(last, &mut joints)
+            && self.within_limits(&joints);
         still.then_some(joints)
     }
 
@@ -371,7 +377,19 @@ impl ChoiceAxes {
     /// Every axis may stand there.
     pub(super) fn reaches(&self, joints: &Joints) -> bool {
         let mut turning = self.turning.iter();
-        turning.all(|axis| axis.allows(joints[axis.joint])) && self.beyond(joints).is_none()
+        turning.all(|axis| axis.allows(joints[axis.joint]))
+            && self.beyond(joints).is_none()
+            && self.within_limits(joints)
+    }
+
+    /// What must hold between the axes holds; travel is not asked for.
+    pub(super) fn within_limits(&self, joints: &Joints) -> bool {
+        self.limits.iter().all(|limit| limit.holds(joints))
+    }
+
+    /// Something must hold between the axes.
+    pub(super) fn has_limits(&self) -> bool {
+        !self.limits.is_empty()
     }
 
     #[inline]

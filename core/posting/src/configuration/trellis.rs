@@ -300,6 +300,7 @@ impl Trellis {
             }
         }
         self.stands = stands;
+        self.drop_beyond_limits(first);
         self.thin(first);
         self.layers.push(TrellisLayer {
             line,
@@ -792,6 +793,21 @@ impl Trellis {
                 }
             }
         }
+    }
+
+    /// Leaves those states of the newest layer at which what must hold between the axes holds.
+    fn drop_beyond_limits(&mut self, first: usize) {
+        if !self.axes.has_limits() {
+            return;
+        }
+        let mut kept = first;
+        for index in first..self.states.len() {
+            if self.axes.within_limits(&self.states[index].joints) {
+                self.states.swap(kept, index);
+                kept += 1;
+            }
+        }
+        self.states.truncate(kept);
     }
 
     /// Keeps the cheapest states of the newest layer, if there are too many.

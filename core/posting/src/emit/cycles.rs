@@ -126,6 +126,7 @@ impl EmitStage<'_> {
         for block in blocks.filter(|block| !block.still) {
             let mut drifted = *block;
             drifted.deviation.tip += drift;
+            self.keep_limits(block, None);
             self.extremes.cover(&block.joints);
             self.extremes.go(&self.last, &block.joints);
             self.extremes.mark(&drifted, self.writer.next());

@@ -17,14 +17,14 @@ const TURN: f64 = 360.0;
 
 /// What an axis does for the tool on its way to the part.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum AxisRole {
+pub(super) enum AxisRole {
     Rotary,
     Plane,
     Depth,
 }
 
 impl AxisRole {
-    fn of(machine: &Machine, joint: usize) -> Self {
+    pub(super) fn of(machine: &Machine, joint: usize) -> Self {
         if machine.axes[joint].joint.rotary {
             Self::Rotary
         } else if axis_words::is_depth(machine, joint) {
@@ -100,6 +100,7 @@ impl EmitStage<'_> {
         positions: &[(usize, f64)],
         event: for<'e> fn(u32, &'e [f64]) -> Event<'e>,
     ) {
+        self.keep_going(line, positions);
         let mut axes = 0;
         let mut words = WordValues::default();
         for &(joint, value) in positions {

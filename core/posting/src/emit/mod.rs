@@ -5,6 +5,7 @@ mod control;
 mod cycles;
 mod extremes;
 mod frame;
+mod limits;
 mod state;
 mod text;
 mod text_thread;
@@ -28,6 +29,7 @@ use crate::program::Command;
 use crate::stream::StreamItem;
 use cycles::{CommandedCycle, CycleWordPlaces};
 pub(crate) use extremes::Extremes;
+use limits::LimitWatch;
 use state::{
     ClampState, CompensationState, CoolantState, PlaneState, ProgramSpindle, SmoothingState,
 };
@@ -74,6 +76,7 @@ pub(crate) struct EmitStage<'a> {
     /// The head that the tool was used with last came to the part with its own or the program's work offset.
     worked: bool,
     compensation: CompensationState,
+    limits: LimitWatch,
     /// Columns of a run of cuts on their way to an event.
     cuts: Vec<f64>,
     /// Observers of the program; none if nobody looks on.
@@ -116,6 +119,7 @@ impl<'a> EmitStage<'a> {
             head: None,
             worked: false,
             compensation: CompensationState::default(),
+            limits: LimitWatch::default(),
             cuts: Vec::new(),
             observers: None,
             findings: findings.clone(),
@@ -174,7 +178,9 @@ impl<'a> EmitStage<'a> {
                     self.end_cycle(*line);
                     self.set_plane(*line, plane.clone());
                 }
-                StreamItem::Note { note: BlockNote::Placer(_), .. } => {}
+                StreamItem::Note { note: BlockNote::Placer(placer), .. } => {
+                    self.limits.placer = Some(placer.clone());
+                }
             }
             if self.writer.is_full() {
                 self.flush();
@@ -267,6 +273,7 @@ impl<'a> EmitStage<'a> {
                 );
             }
         }
+        self.keep_limits(block, printed);
         self.last = block.joints;
         if block.reason != BlockReason::Above {
             self.begin_compensation(line);

@@ -364,7 +364,7 @@ fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<LinearMotio
 
 /// Where the axes stand at each of the [`looks`] places along a curve, its end the last: up to where they cannot
 /// follow.
-fn looked(motion: &Motion) -> impl Iterator<Item = Joints> + '_ {
+pub(super) fn looked(motion: &Motion) -> impl Iterator<Item = Joints> + '_ {
     let looks = looks(motion);
     let ends = [&motion.from, &motion.to];
     (1..=looks).map_while(move |look| {

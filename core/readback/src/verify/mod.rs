@@ -22,6 +22,7 @@ mod fed_rapid;
 mod feed;
 mod hole;
 mod left_on;
+mod limits;
 mod near;
 mod next_cut;
 mod octree;
@@ -56,6 +57,7 @@ pub use cut_path::CutPath;
 use detour::Detour;
 use hole::{DrilledHole, HoleRun};
 use left_on::RunningFunctions;
+pub use limits::{LimitCheck, PassedLimit};
 use place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace};
 use quick::QuickStand;
 use report::BlockPlace;
@@ -238,6 +240,7 @@ pub struct Verifier<'m, C> {
     /// Where the axes stand; none: nothing has moved.
     stands: Option<Joints>,
     axes: AxisLimitCheck,
+    limits: LimitCheck,
     block: BlockReport,
     found: Verification,
 }
@@ -292,6 +295,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             told: 0,
             stands: None,
             axes: AxisLimitCheck::new(machine),
+            limits: LimitCheck::default(),
             block: BlockReport::default(),
             found: Verification::default(),
             rules,
@@ -412,6 +416,10 @@ impl<'m, C: Course> Verifier<'m, C> {
         let bend = axes::bend_between_words(motion);
         if let Some(fault) = self.axes.over_travel(self.machine, motion, bend) {
             self.axis_fault(motion, fault);
+        }
+        if let Some(PassedLimit { message, by, limit }) = self.limits.passed(self.machine, motion) {
+            let key = format!("[[limit]] {limit}");
+            self.limit_fault("over-travel", key, message, motion, 0, by);
         }
         self.look_for_length(motion);
         let mut goes_on = false;

@@ -1,6 +1,7 @@
 //! The expressions that stand for numbers in a machine file. Angles are in degrees.
 
 mod bounds;
+mod linear;
 
 use crate::fault::SyntaxFault;
 use pest::Parser;
@@ -14,6 +15,7 @@ use std::ops::Range;
 use std::sync::LazyLock;
 
 pub use bounds::Bounds;
+pub use linear::LinearForm;
 
 #[derive(Parser)]
 #[grammar = "expression.pest"]

@@ -21,7 +21,9 @@ pub mod text;
 
 pub use chain::{Link, LinkKind, parse_chain};
 pub use cl::*;
-pub use expression::{Bounds, EvaluationFault, Expression, FUNCTIONS, parse_expression};
+pub use expression::{
+    Bounds, EvaluationFault, Expression, FUNCTIONS, LinearForm, parse_expression,
+};
 pub use fault::{ReadError, SyntaxFault};
 pub use inequality::{Inequality, parse_inequality};
 pub use template::{FillFault, Template};

@@ -12,6 +12,7 @@ mod indexed;
 mod leave;
 mod limits;
 mod quill;
+mod words;
 mod zero;
 
 use crate::common;
@@ -30,7 +31,7 @@ const ROUNDING: f64 = 0.003;
 struct Setup {
     machine: &'static str,
     /// A machine file that extends it.
-    file: Option<&'static str>,
+    file: Option<String>,
     set: Vec<(String, String)>,
     length: f64,
     /// Ending of the CL file, which says its dialect.
@@ -52,8 +53,8 @@ impl Setup {
     }
 
     /// With the keys of a machine file laid over it.
-    fn file(mut self, text: &'static str) -> Self {
-        self.file = Some(text);
+    fn file(mut self, text: impl Into<String>) -> Self {
+        self.file = Some(text.into());
         self
     }
 
@@ -67,7 +68,7 @@ impl Setup {
         let file = folder.path().join(format!("part.{}", self.ending));
         fs::write(&file, text).unwrap();
         let mut machine = self.machine.to_owned();
-        if let Some(text) = self.file {
+        if let Some(text) = &self.file {
             let path = folder.path().join("machine.toml");
             fs::write(&path, format!("extends = {:?}\n{text}", self.machine)).unwrap();
             machine = path.to_str().unwrap().to_owned();
@@ -108,7 +109,7 @@ impl Setup {
 
     fn model(&self, head: Option<&str>) -> Model {
         let mut table = table(self.machine);
-        if let Some(text) = self.file {
+        if let Some(text) = &self.file {
             overlay(&mut table, text.parse().unwrap());
         }
         for (key, value) in &self.set {

@@ -10,6 +10,7 @@ use post_plugin::Format;
 use crate::description::{Machine, OutputUnits, Tcp};
 use crate::kinematics::{Joints, MAX_AXES, Solver};
 use crate::tilted_plane::TiltedPlane;
+use crate::word_map::WordMap;
 
 /// Values of the words of a block, in the order in which they are written.
 pub type WordValues = [f64; MAX_AXES];
@@ -28,6 +29,8 @@ pub struct AxisWords {
     cartesian: bool,
     /// The tilted plane whose coordinates the linear words are.
     plane: Option<TiltedPlane>,
+    /// What rotary words make of the values of several axes; none where each is that of one.
+    coupled: Option<Box<WordMap>>,
 }
 
 /// One word.
@@ -43,7 +46,7 @@ struct Word {
     turn_from: Option<f64>,
     /// Coordinate of the part frame, for a linear word when the control keeps the tip.
     coordinate: usize,
-    /// Axis units (mm, radians) in one unit of the word (mm or inch, degrees).
+    /// Axis units (mm, radians) in one unit of the word (mm or inch, degrees; of a diameter half of it).
     unit: f64,
     /// One over `unit`.
     per_unit: f64,
@@ -52,6 +55,9 @@ struct Word {
     /// One over `scale`: one printed number is always the same `f64`, so `==` compares what is printed.
     per_scale: f64,
 }
+
+/// The unit of rotary words that hold several axes, radians.
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// The order in which addresses stand in a block.
 const ORDER: &str = "XYZUVWABC";
@@ -103,6 +109,11 @@ pub fn coordinate(name: &str) -> usize {
     }
 }
 
+/// What the word of the axis at `joint` multiplies it by.
+fn own_factor(machine: &Machine, joint: usize) -> f64 {
+    machine.word_map.as_ref().map_or(1.0, |map| map.factor(joint))
+}
+
 /// mm in one unit of the program.
 pub fn unit_length(units: OutputUnits) -> f64 {
     match units {
@@ -129,8 +140,10 @@ pub fn work_offset(machine: &Machine) -> Option<Vec<(&str, f64)>> {
     let solver = machine.solver_at(0.0, &[0.0; MAX_AXES]).ok()?;
     let rotary = machine.axes.iter().enumerate().filter(|(_, axis)| axis.joint.rotary);
     let zero = work_zero(&solver, rotary.map(|(joint, axis)| (joint, axis.zero)))?;
-    let shown =
-        |joint: usize| (machine.axes[joint].name.as_str(), zero[joint] + machine.axes[joint].zero);
+    let shown = |joint: usize| {
+        let shown = zero[joint] + machine.axes[joint].zero;
+        (machine.axes[joint].name.as_str(), shown * own_factor(machine, joint))
+    };
     let linear = order(machine).into_iter().filter(|joint| !machine.axes[*joint].joint.rotary);
     Some(linear.map(shown).collect())
 }
@@ -144,6 +157,7 @@ impl AxisWords {
                 let axis = &machine.axes[joint];
                 let scale = (0..*decimals).fold(1.0, |scale, _| scale * 10.0);
                 let unit = if axis.joint.rotary { 1f64.to_radians() } else { length };
+                let unit = unit / own_factor(machine, joint);
                 Word {
                     place,
                     joint,
@@ -160,13 +174,16 @@ impl AxisWords {
         let (rotary, linear): (Vec<Word>, Vec<Word>) =
             words.partition(|word| machine.axes[word.joint].joint.rotary);
         let name = |word: &Word| machine.axes[word.joint].name.as_str();
+        let scaled = linear.iter().any(|word| own_factor(machine, word.joint) != 1.0);
+        let coupled = machine.word_map.as_ref().filter(|map| map.couples());
         Self {
             tcp: machine.control.tcp,
-            cartesian: linear.iter().map(name).eq(["X", "Y", "Z"]),
+            cartesian: linear.iter().map(name).eq(["X", "Y", "Z"]) && !scaled,
             rotary,
             linear,
             zero: [0.0; MAX_AXES],
             plane: None,
+            coupled: coupled.cloned().map(Box::new),
         }
     }
 
@@ -177,7 +194,8 @@ impl AxisWords {
             let mut words = self.linear.iter();
             words.any(|word| word.coordinate == wanted)
         };
-        let whole = self.linear.len() == 3 && (0..3).all(coordinate);
+        let unscaled = self.linear.windows(2).all(|pair| pair[0].unit == pair[1].unit);
+        let whole = self.linear.len() == 3 && (0..3).all(coordinate) && unscaled;
         whole.then(|| Self { plane: Some(plane), ..self.clone() })
     }
 
@@ -201,6 +219,9 @@ impl AxisWords {
     /// Puts the rotary values on printed numbers and writes them to `values`.
     #[inline]
     pub fn print_rotary(&self, joints: &mut Joints, values: &mut WordValues) {
+        if let Some(map) = &self.coupled {
+            return self.print_coupled(map, joints, values);
+        }
         for word in &self.rotary {
             let asked = joints[word.joint] + word.reading;
             let value = word.printed(asked * word.per_unit);
@@ -210,6 +231,47 @@ impl AxisWords {
                 Some(from) => word.within_turn(value, from),
             };
         }
+    }
+
+    /// [`AxisWords::print_rotary`] where words hold several axes.
+    #[cold]
+    fn print_coupled(&self, map: &WordMap, joints: &mut Joints, values: &mut WordValues) {
+        let mut words = self.words_of(map, joints);
+        for word in &self.rotary {
+            let value = word.printed(words[word.joint] / DEGREE);
+            values[word.place] = value;
+            words[word.joint] = value * DEGREE;
+        }
+        let shown = map.values(&words);
+        for word in &self.rotary {
+            joints[word.joint] = shown[word.joint] - word.reading;
+        }
+    }
+
+    /// Rotary words of axis values, radians, by the places of their axes in the chain.
+    fn words_of(&self, map: &WordMap, joints: &Joints) -> Joints {
+        let mut shown = Joints::default();
+        for word in &self.rotary {
+            shown[word.joint] = joints[word.joint] + word.reading;
+        }
+        map.words(&shown)
+    }
+
+    /// Some word holds several axes.
+    pub fn is_coupled(&self) -> bool {
+        self.coupled.is_some()
+    }
+
+    /// What is printed, with its place among the words, so that the axis at `joint` comes to its value in `to`, the others
+    /// of words that hold it to theirs: words that hold several axes.
+    pub fn coupled_words(&self, joint: usize, to: &Joints) -> Vec<(usize, f64)> {
+        let Some(map) = self.coupled.as_ref().filter(|map| map.is_coupled(joint)) else {
+            return Vec::new();
+        };
+        let words = self.words_of(map, to);
+        let moved: Vec<usize> = map.moved_by(joint).collect();
+        let rotary = self.rotary.iter().filter(|word| moved.contains(&word.joint));
+        rotary.map(|word| (word.place, word.printed(words[word.joint] / DEGREE))).collect()
     }
 
     /// Where the control keeps the tip, and in a tilted plane: writes `tip` (mm, part frame) to `values` and gives the
@@ -282,7 +344,8 @@ impl AxisWords {
     /// it, and so far beyond them as is still printed as they are. mm or radians.
     pub fn printed_travel(&self, joint: usize, [least, most]: [f64; 2]) -> [f64; 2] {
         let mut words = self.rotary.iter().chain(&self.linear);
-        let Some(word) = words.find(|word| word.joint == joint) else {
+        let coupled = self.coupled.as_ref().is_some_and(|map| map.is_coupled(joint));
+        let Some(word) = words.find(|word| word.joint == joint).filter(|_| !coupled) else {
             return [least, most];
         };
         let steps = |value: f64| (value + word.reading) * word.per_unit * word.scale;
@@ -309,7 +372,13 @@ impl AxisWords {
 
     /// The largest error of the tool axis that rounding the rotary words can make, radians.
     pub fn axis_rounding(&self) -> f64 {
-        self.rotary.iter().map(|word| 0.5 * word.unit / word.scale).sum()
+        let half = |word: &Word| 0.5 * DEGREE / word.scale;
+        let Some(map) = &self.coupled else {
+            return self.rotary.iter().map(|word| 0.5 * word.unit / word.scale).sum();
+        };
+        let mut halves = Joints::default();
+        self.rotary.iter().for_each(|word| halves[word.joint] = half(word));
+        self.rotary.iter().map(|word| map.rounded(word.joint, &halves)).sum()
     }
 }
 

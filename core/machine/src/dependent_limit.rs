@@ -7,7 +7,7 @@
 use post_grammar::Inequality;
 use post_grammar::text::excerpt;
 
-use crate::description::Machine;
+use crate::description::{Axis, Machine};
 use crate::kinematics::{Joints, Solver, TcpBlock, Trace};
 
 /// What rounding of the words may take a limit beyond its end, in its own units (mm, degrees).
@@ -40,6 +40,14 @@ pub(crate) enum Named {
     },
     /// A number of the machine file.
     Parameter(f64),
+}
+
+impl Named {
+    /// The value that the control shows of `axis`, at place `joint` in the chain.
+    pub(crate) fn of(joint: usize, axis: &Axis) -> Self {
+        let unit = axis.unit();
+        Self::Axis { joint, unit, zero: axis.zero / unit }
+    }
 }
 
 impl DependentLimit {

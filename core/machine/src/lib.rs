@@ -20,6 +20,7 @@ pub mod place;
 pub mod program_text;
 pub mod servo;
 pub mod tilted_plane;
+pub mod word_map;
 
 /// What tests look into; no part of the crate's face.
 #[doc(hidden)]

@@ -36,6 +36,11 @@ pub fn check(check: &Check) -> String {
     for at in &check.poles.at {
         rows.row("", pole(at));
     }
+    for (index, moved) in check.words.iter().enumerate() {
+        let name = if index == 0 { "words" } else { "" };
+        let by = number(moved.by, 3);
+        rows.row(name, format_args!("{} +{by} by itself: {}", moved.axis, moved.words));
+    }
     for limit in &check.limits {
         dependent_limit(&mut rows, limit);
     }

@@ -15,7 +15,7 @@ fn fork(tcp: &str, keep: &str) -> Setup {
     on("bc-fork")
         .with("control.tcp", tcp)
         .with("workpiece.mount", "[0, 0, 300]")
-        .with("limit", &format!("[{{ keep = {keep:?} }}]"))
+        .file(format!("[[limit]]\nkeep = {keep:?}\n"))
 }
 
 /// Z of the machine and B, as they stand at `shares` of the ways between words of the cuts.
@@ -103,7 +103,7 @@ fn the_solution_that_keeps_a_limit_is_taken() {
     }
 }
 
-/// The tool swings about its tip from one side to the other: at both ends Z stands lower than on the way.
+/// The tool swings about its tip from one side to the other: at both ends the limit is far.
 #[test]
 fn a_limit_holds_between_the_words() {
     let at = V::new(0.0, 0.0, 20.0);
@@ -113,13 +113,10 @@ fn a_limit_holds_between_the_words() {
         .cut(at + V::x() * 0.5, lean(20.0, 180.0))
         .rapid(at + V::z() * 100.0, lean(20.0, 180.0))
         .end();
-    // B has turned a tenth of its way: Z stands at 20 + 300 - 1120 + 320 cos(16).
-    let top = 20.0 + 300.0 - 1120.0 + ARM * libm::cos(16f64.to_radians());
-    let keep = format!("Z < {top} + 100 * abs(B) / 16 + 40 * max(0, abs(B) - 16)");
-    let said = fork("control", &keep).refused(&text);
+    // With B at 0 it stands at 20 + 300 - 1120 + 320, with B at 20 it is 19.3 mm lower.
+    let said = fork("control", "Z > -470 - 10 * abs(B)").refused(&text);
     assert!(said.contains("between the ends of this motion"), "{said}");
-    let higher = format!("Z < {top} + 25 + 100 * abs(B) / 16 + 40 * max(0, abs(B) - 16)");
-    let _ = fork("control", &higher).made(&text);
+    assert!(fork("control", "Z > -481 - 10 * abs(B)").made(&text).blocks.len() > 3);
 }
 
 /// Axes of a rapid that need not arrive together come by where Z is down and B turned.
@@ -134,11 +131,12 @@ fn a_rapid_keeps_a_limit_whichever_axis_comes_first() {
         .cut(at + V::z() * 240.0, leant)
         .rapid(at + V::z() * 250.0, leant)
         .end();
-    let keep = "Z > -520 + 2 * abs(B)";
+    // Z stands at -500 before, and goes up by 30 mm in the first 5 degrees.
+    let keep = "Z > -502 + 0.8 * abs(B)";
     let together = fork("post", keep).with("clearance.rapid_axes", "\"together\"");
     let made = together.made(&text);
     for [z, b] in ways(&together, &made, 100) {
-        assert!(z > -520.0 + 2.0 * b.abs() - SLACK, "Z {z} B {b}");
+        assert!(z > -502.0 + 0.8 * b.abs() - SLACK, "Z {z} B {b}");
     }
     let said = fork("post", keep).refused(&text);
     assert!(said.contains("between the ends of this motion"), "{said}");
@@ -176,11 +174,18 @@ fn verify_and_read_tell_a_limit_that_a_program_passes() {
     }
 }
 
+/// `post check` of the fork with a limit.
+fn checked(keep: &str, more: &[&str]) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = folder.path().join("machine.toml");
+    fs::write(&machine, format!("extends = \"bc-fork\"\n[[limit]]\nkeep = {keep:?}\n")).unwrap();
+    post(&[&["check", machine.to_str().unwrap()][..], more].concat())
+}
+
 #[test]
 fn check_tells_what_a_limit_leaves_of_the_travel() {
     let told = |keep: &str| {
-        let limit = format!("limit=[{{ keep = {keep:?} }}]");
-        let run = post(&["check", "bc-fork", "--set", &limit]);
+        let run = checked(keep, &[]);
         format!("{}{}", run.out, run.err)
     };
     let text = told("Z > -700 + 2 * abs(B)");
@@ -204,18 +209,10 @@ fn what_a_limit_cannot_say_is_refused_with_its_line() {
         ("-3 < Z < 3", "one comparison is possible"),
         ("Z > 2 *", "a number or a name is missing at the end"),
     ] {
-        let limit = format!("limit=[{{ keep = {keep:?} }}]");
-        let run = post(&["check", "bc-fork", "--set", &limit]);
+        let run = checked(keep, &[]);
         assert_eq!(run.code, 1, "{keep}: {}", run.out);
         assert!(run.err.contains("machine-limit") && run.err.contains(message), "{}", run.err);
     }
-    let twice = post(&[
-        "check",
-        "bc-fork",
-        "--set",
-        "parameters.B=3",
-        "--set",
-        "limit=[{ keep = \"Z > B\" }]",
-    ]);
+    let twice = checked("Z > B", &["--set", "parameters.B=3"]);
     assert!(twice.err.contains("B is an axis and a parameter"), "{}", twice.err);
 }

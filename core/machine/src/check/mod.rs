@@ -18,6 +18,7 @@ mod search;
 mod settings;
 mod signs;
 mod volume;
+mod words;
 
 use serde::Serialize;
 
@@ -30,6 +31,7 @@ pub use reach::{DirectionMap, ReachableCone};
 pub use round_trip::RoundTrip;
 pub use signs::Sign;
 pub use volume::Volume;
+pub use words::WordReport;
 
 pub use probe::{InverseWork, Probe};
 
@@ -56,6 +58,9 @@ pub struct Check {
     pub leaves: Option<String>,
     /// What each axis does, a line an axis and direction.
     pub signs: Vec<Sign>,
+    /// What words that are no axis values do.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub words: Vec<WordReport>,
     /// What limits that depend on other axes leave of the travel.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub limits: Vec<LimitReport>,
@@ -107,6 +112,7 @@ impl Check {
             not_known: machine.profile.not_known(),
             leaves: leaving::told(machine),
             signs: signs::table(&probe),
+            words: words::told(&probe),
             limits,
             typical,
             poles,

@@ -316,7 +316,8 @@ impl Builder<'_> {
         };
         self.seconds(file, &mut axes);
         self.servos(file, &mut axes);
-        let limits = self.dependent_limits(&file.limit, &axes);
+        let mut limits = self.dependent_limits(&file.limit, &axes);
+        let word_map = self.word_map(&file.word, &axes, &mut limits);
         let mount = file.workpiece.mount.as_ref();
         let mount = mount.map_or_else(Vector3::zeros, |mount| self.vector(mount));
         let turn = self.checked(&file.workpiece.turn).unwrap_or(0.0).to_radians();
@@ -353,6 +354,7 @@ impl Builder<'_> {
             control: self.control(file.control.get_ref(), &axes, options, own.arcs),
             axes,
             limits,
+            word_map,
             mount,
             mount_said: file.workpiece.mount.is_some(),
             given_travel: Vec::new(),

@@ -70,11 +70,7 @@ impl Builder<'_> {
                 self.fault("machine-limit", keep.span(), message, "rename the parameter");
                 None
             }
-            (Some(joint), None) => {
-                let axis = &axes[joint];
-                let unit = axis.unit();
-                Some(Named::Axis { joint, unit, zero: axis.zero / unit })
-            }
+            (Some(joint), None) => Some(Named::of(joint, &axes[joint])),
             (None, Some(value)) => Some(Named::Parameter(value)),
             // That it has no value is told where it stands.
             (None, None) if self.without.contains(name) => None,

@@ -19,6 +19,7 @@ use super::table::{
     Count, DeValue, EntryError, Key, KeyType, Schemas, Slip, Spanned, Value, defined, keys, words,
 };
 use super::tools::ToolsFile;
+use super::word::WordFile;
 
 /// Names of axes.
 const AXES: Bounds = Bounds::names("^[A-CEI-LPQRU-Z][0-9]*$");
@@ -82,6 +83,8 @@ keys! {
         tools: ToolsFile,
         /// The axes of the chain by their letters.
         axis: Spanned<BTreeMap<String, Spanned<AxisFile>>> = AXES,
+        /// Words of the program that are no axis values, by their letters.
+        word: BTreeMap<Spanned<String>, Spanned<WordFile>> = AXES,
         /// Limits of axes that depend on other axes, each `[[limit]]` one.
         limit: Vec<Spanned<LimitFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
         /// STL files of the machine's bodies, for pictures and for `post clearance`; mm, machine frame, every axis at zero. An axis letter

@@ -34,6 +34,7 @@ mod solids;
 mod spindle;
 pub(crate) mod table;
 mod tools;
+mod word;
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -72,6 +73,7 @@ use crate::dependent_limit::DependentLimit;
 use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
 use crate::servo::Servo;
+use crate::word_map::WordMap;
 
 /// The linear axes whose words can be those of a tip.
 const TIP_WORDS: [&str; 3] = ["X", "Y", "Z"];
@@ -91,6 +93,8 @@ pub struct Machine {
     pub axes: Vec<Axis>,
     /// What must hold between the axes, beside the travel of each.
     pub limits: Vec<DependentLimit>,
+    /// What words make of axis values; none where each word is the value of its axis.
+    pub word_map: Option<WordMap>,
     /// Where the part origin sits with all axes at zero, mm, machine frame.
     pub mount: Vector3<f64>,
     /// The machine file, or the job, says where the part sits.

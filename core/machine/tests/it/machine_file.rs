@@ -142,6 +142,43 @@ const SLIPS: &[Slip] = &[
         false,
     ),
     ("tcp = \"post\"", "tcp = \"posts\"", "43 \"posts\"", "there is no value `posts`", true),
+    ("tcp = \"post\"", "tcp = true", "43 true", "there is no value `true`", true),
+    (
+        "rotary = [0, 0, 1]",
+        "rotary = \"Z\"",
+        "20 \"Z\"",
+        "expected three numbers, such as [1, 0, 0] for X",
+        false,
+    ),
+    // Limits and words.
+    (
+        "[control]\ndialect",
+        "[[limit]]\nkeep = \"Z > -100 + 2 * abs(B)\"\n\n[control]\ndialect",
+        "42 \"Z > -100 + 2 * abs(B)\"",
+        "B is neither an axis nor a parameter; its axes are C, A, Y, X, Z",
+        false,
+    ),
+    (
+        "[control]\ndialect",
+        "[[limit]]\nkeep = \"half > 3\"\n\n[control]\ndialect",
+        "42 \"half > 3\"",
+        "`half > 3` names no axis",
+        true,
+    ),
+    (
+        "[control]\ndialect",
+        "[word.X]\nis = \"2 * X + Y\"\n\n[control]\ndialect",
+        "42 \"2 * X + Y\"",
+        "X and Y do not both turn",
+        false,
+    ),
+    (
+        "[control]\ndialect",
+        "[word.X]\nis = \"2 * X\"\ntravel = [3, 2]\n\n[control]\ndialect",
+        "43 [3, 2]",
+        "the first must be the smaller",
+        true,
+    ),
     (
         "program = 7",
         "program = [7]",

@@ -16,12 +16,13 @@ impl EmitStage<'_> {
     }
 
     /// Nothing is in the way of a run of cuts: no cycle, no spindle that has to turn first, no clamp, no
-    /// compensation that waits, no limit that depends on other axes, and nobody who notes where blocks stand.
+    /// compensation that waits, no limit that depends on other axes, no word that holds several axes, and nobody who notes where blocks stand.
     pub(crate) fn takes_runs(&self) -> bool {
         self.cycle.is_none()
             && self.spindle.waits.is_none()
             && self.compensation.waits.is_none()
             && self.machine.limits.is_empty()
+            && !self.words.is_coupled()
             && !self.clamps()
             && !self.writer.notes_places()
     }

@@ -56,6 +56,10 @@ impl CycleWordPlaces {
     pub(super) fn new(machine: &Machine) -> Self {
         let order = axis_words::order(machine);
         let z = order.iter().position(|joint| machine.axes[*joint].name == "Z");
+        // Depths of a cycle are lengths: beside a word that is a multiple of its axis they would be of two sorts.
+        let plain =
+            |place: &usize| machine.word_map.as_ref().is_none_or(|map| map.is_plain(order[*place]));
+        let z = z.filter(plain);
         let along = |place: &usize| axis_words::depth(machine) == Some(order[*place]);
         let moves = |place: &usize| {
             let axis = &machine.axes[order[*place]];

@@ -105,7 +105,14 @@ impl EmitStage<'_> {
         let mut words = WordValues::default();
         for &(joint, value) in positions {
             let travel = self.machine.axes[joint].travel;
-            if let Some((place, word)) = self.words.machine_word(joint, value, travel) {
+            let mut to = self.last;
+            positions.iter().for_each(|(joint, value)| to[*joint] = *value);
+            for (place, word) in self.words.coupled_words(joint, &to) {
+                axes |= 1 << place;
+                words[place] = word;
+            }
+            let own = self.words.machine_word(joint, value, travel);
+            if let Some((place, word)) = own.filter(|(place, _)| axes >> place & 1 == 0) {
                 axes |= 1 << place;
                 words[place] = word;
             }

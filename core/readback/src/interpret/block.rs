@@ -531,7 +531,7 @@ impl ControlState {
             let letter = left.trailing_zeros() as usize % 26;
             left &= left - 1;
             let place = usize::from(self.axes.letters[letter]) % post_machine::kinematics::MAX_AXES;
-            let value = words.values[letter];
+            let value = words.values[letter] * self.axes.scale[place];
             let way = incremental & (1 << letter) != 0;
             if way {
                 target.ways |= 1 << place;
@@ -539,7 +539,7 @@ impl ControlState {
             if self.axes.rotary & (1 << place) != 0 {
                 let value = value.to_radians();
                 let to = if way {
-                    self.at.joints[place] + value
+                    self.word_at(place) + value
                 } else if words.approached & (1 << letter) != 0 {
                     self.approach(place, self.zero[place] + value, words.approaches[letter])
                 } else {

@@ -41,7 +41,16 @@ impl AxisLetters {
             cartesian: [None; 3],
             mask: 0,
             rotary: 0,
+            scale: [1.0; MAX_AXES],
+            coupled: None,
         };
+        if let Some(map) = &machine.word_map {
+            for (place, scale) in axes.scale.iter_mut().enumerate() {
+                // Those of several axes are made by the whole map.
+                *scale = if map.is_coupled(place) { 1.0 } else { 1.0 / map.factor(place) };
+            }
+            axes.coupled = Some(map).filter(|map| map.couples()).cloned().map(Arc::new);
+        }
         for (place, axis) in machine.axes.iter().enumerate() {
             axes.rotary |= u32::from(axis.joint.rotary) << place;
             match axis.name.as_bytes() {

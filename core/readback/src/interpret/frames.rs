@@ -53,6 +53,15 @@ fn taken(
             );
         }
     }
+    for letter in [b'X', b'Y', b'Z'] {
+        let place = control.axis_of(letter).filter(|place| control.axes.scale[*place] != 1.0);
+        if place.is_some() && words.present & bit(letter) != 0 {
+            let name = char::from(letter);
+            let message =
+                format!("{what} of {name} is not run, whose word is no axis value ([word.{name}])");
+            return Err(control.refuse("nc-frame", message));
+        }
+    }
     let unit = control.modal.unit;
     let found = [b'X', b'Y', b'Z'].map(|letter| words.take(letter).map(|value| value * unit));
     // They move nothing.

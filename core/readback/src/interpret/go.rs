@@ -265,6 +265,14 @@ impl ControlState {
     /// Takes the axes that `target` says; the places of the rotary ones among them, as bits.
     #[inline]
     fn take_said(&mut self, target: &MotionTarget) -> u32 {
+        if self.axes.coupled.is_some() {
+            let mut joints = self.at.joints;
+            let said = |place: &usize| target.said >> place & 1 == 1;
+            (0..MAX_AXES).filter(said).for_each(|place| joints[place] = target.joints[place]);
+            self.uncouple(&mut joints, target.said);
+            self.at.joints = joints;
+            return self.axes.rotary;
+        }
         let mut said = target.said;
         while said != 0 {
             let place = said.trailing_zeros() as usize % MAX_AXES;
@@ -272,6 +280,44 @@ impl ControlState {
             said &= said - 1;
         }
         target.said & self.axes.rotary
+    }
+
+    /// The word of an axis where it stands, counted from the drawing's zero, mm or radians: its value, but of words that
+    /// hold several axes.
+    pub(super) fn word_at(&self, place: usize) -> f64 {
+        match &self.axes.coupled {
+            Some(map) => map.words(&self.shown_joints())[place] - self.machine.axes[place].zero,
+            None => self.at.joints[place],
+        }
+    }
+
+    /// What the control would show of each axis, mm and radians, if its word were its value.
+    fn shown_joints(&self) -> Joints {
+        let mut shown = self.at.joints;
+        for (shown, axis) in shown.iter_mut().zip(&self.machine.axes) {
+            *shown += axis.zero;
+        }
+        shown
+    }
+
+    /// Makes axis values of words that hold several axes: `joints` has the words that are `said`, counted from the
+    /// drawing's zero, and the other words stay.
+    pub(super) fn uncouple(&self, joints: &mut Joints, said: u32) {
+        let Some(map) = &self.axes.coupled else {
+            return;
+        };
+        let mut words = map.words(&self.shown_joints());
+        for (place, axis) in self.machine.axes.iter().enumerate() {
+            if said >> place & 1 == 1 && map.is_coupled(place) {
+                words[place] = joints[place] + axis.zero;
+            }
+        }
+        let shown = map.values(&words);
+        for (place, axis) in self.machine.axes.iter().enumerate() {
+            if map.is_coupled(place) {
+                joints[place] = shown[place] - axis.zero;
+            }
+        }
     }
 
     /// Where the tool is with the joints as they are; those at the bits of `turned` have turned.
@@ -471,7 +517,7 @@ impl ControlState {
     /// way.
     #[inline]
     pub fn turned(&self, place: usize, value: f64) -> f64 {
-        self.turned_from(place, value, self.at.joints[place])
+        self.turned_from(place, value, self.word_at(place))
     }
 
     /// [`ControlState::turned`] of an axis that stands at `last`.

@@ -70,6 +70,7 @@ impl ControlState {
                 *joint = words.named_values[place];
             }
         }
+        self.uncouple(&mut joints, stated);
         self.go_machine(kind, &joints, stated)
     }
 
@@ -134,6 +135,7 @@ impl ControlState {
     /// The axis value (from the drawing's zero, mm or radians) of a machine coordinate in program units.
     pub(super) fn shown(&self, place: usize, value: f64) -> f64 {
         let axis = &self.machine.axes[place];
+        let value = value * self.axes.scale[place];
         let value = if axis.joint.rotary { value.to_radians() } else { value * self.modal.unit };
         value - axis.zero
     }

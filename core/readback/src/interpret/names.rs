@@ -142,6 +142,7 @@ impl ControlState {
         };
         let worth = self.variables.worth(value).map_err(|finding| self.placed(*finding).boxed())?;
         let rotary = self.axes.rotary & (1 << place) != 0;
+        let worth = worth * self.axes.scale[place];
         let length = if rotary { worth.to_radians() } else { worth * self.modal.unit };
         let way = match approach {
             Some(Approach::Incremental) => true,
@@ -149,7 +150,7 @@ impl ControlState {
             None => self.modal.incremental,
         };
         let to = if way {
-            self.at.joints[place] + length
+            self.word_at(place) + length
         } else if rotary {
             let to = self.zero[place] + length;
             match approach {

@@ -77,6 +77,7 @@ impl ControlState {
             && !self.in_machine
             && !self.hole
             && self.axes.are_cartesian()
+            && self.machine.word_map.is_none()
             && self.state.solver.chain().edge().is_none();
         let counted = match self.tip_words() {
             true => self.state.tcp && self.frames.plane.is_none(),

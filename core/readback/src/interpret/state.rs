@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
-use post_machine::kinematics::{Joints, Solver, Turns};
+use post_machine::kinematics::{Joints, MAX_AXES, Solver, Turns};
 use post_machine::program_text::DeclaredLines;
+use post_machine::word_map::WordMap;
 
 use super::ReadReport;
 use super::cycles::CycleState;
@@ -123,6 +124,10 @@ pub(super) struct AxisLetters {
     pub mask: u32,
     /// Bits of the places of rotary axes.
     pub rotary: u32,
+    /// Axis values in one unit of the word of each axis, by its place: half of a diameter.
+    pub scale: [f64; MAX_AXES],
+    /// What words that hold several axes make of them.
+    pub coupled: Option<Arc<WordMap>>,
 }
 
 impl AxisLetters {

@@ -169,6 +169,11 @@ fn begun(
     meaning: Option<Meaning>,
     axis: usize,
 ) -> Result<IsoCycle, Box<Diagnostic>> {
+    let scaled = |place: usize| control.axes.scale[place] != 1.0;
+    if control.axes.cartesian[axis].is_some_and(scaled) {
+        let message = "a cycle along an axis whose word is no axis value ([word]) is not run";
+        return Err(control.refuse("nc-cycle", message));
+    }
     match (meaning, control.cycles.iso) {
         (Some(meaning), Some(before)) => Ok(IsoCycle { code, meaning, ..before }),
         (Some(meaning), None) => Ok(IsoCycle {

@@ -1,0 +1,159 @@
+//! `[word.X]`: words of the program that are no axis values.
+
+use std::collections::BTreeMap;
+
+use post_grammar::text::excerpt;
+use post_grammar::{parse_expression, parse_inequality};
+use toml::Spanned;
+
+use super::Axis;
+use super::build::Builder;
+use super::keys::axes_are;
+use super::quantity::KeyedNumber;
+use super::table::keys;
+use crate::dependent_limit::{DependentLimit, Named, SHOWN};
+use crate::kinematics::{Joints, MAX_AXES};
+use crate::word_map::WordMap;
+
+keys! {
+    /// A word of the program that is no axis value.
+    WordFile {
+        /// What it is: a sum of multiples of axes, each as the control would show it without this, such as `"2 * X"` (a
+        /// diameter) or `"J3 - J2"` (the angle of an arm against the horizontal). Of a linear axis a multiple of itself.
+        is: Spanned<String>,
+        /// Least and largest value of the word, mm or degrees, in coordinates of the machine; the travel of its axis holds
+        /// besides.
+        travel: Option<Spanned<[KeyedNumber; 2]>>,
+    }
+}
+
+impl Builder<'_> {
+    /// What words make of the values of `axes`; none where each is its own. Limits of words are put to `limits`.
+    pub(super) fn word_map(
+        &mut self,
+        file: &BTreeMap<Spanned<String>, Spanned<WordFile>>,
+        axes: &[Axis],
+        limits: &mut Vec<DependentLimit>,
+    ) -> Option<WordMap> {
+        let mut rows = [Joints::default(); MAX_AXES];
+        for (place, row) in rows.iter_mut().enumerate() {
+            row[place] = 1.0;
+        }
+        let first = file.keys().next()?;
+        for (name, word) in file {
+            let Some(place) = axes.iter().position(|axis| axis.name == *name.get_ref()) else {
+                let name_text = excerpt(name.get_ref(), SHOWN);
+                let message =
+                    format!("[word.{name_text}] is the word of no axis; {}", axes_are(axes));
+                let help = "a word has the name of the axis that it moves";
+                self.fault("machine-axis-word", name.span(), message, help);
+                continue;
+            };
+            if let Some(row) = self.word_row(place, &word.get_ref().is, axes) {
+                rows[place] = row;
+                self.word_travel(word.get_ref(), axes, limits);
+            }
+        }
+        let map = WordMap::new(rows);
+        if map.is_none() {
+            let message = "the words of [word] do not tell where the axes stand".to_owned();
+            let help =
+                "each word is a sum in which its own axis stands, and no word follows from others";
+            self.fault("machine-axis-word", first.span(), message, help);
+        }
+        map.filter(|map| (0..axes.len()).any(|place| !map.is_plain(place)))
+    }
+
+    /// What each axis is multiplied by in the word of the axis at `place`.
+    fn word_row(&mut self, place: usize, is: &Spanned<String>, axes: &[Axis]) -> Option<Joints> {
+        let text = excerpt(is.get_ref(), SHOWN);
+        let own = &axes[place];
+        let expression = match parse_expression(is.get_ref()) {
+            Ok(expression) => expression,
+            Err(fault) => {
+                let message = format!("`{text}`: {}", fault.message);
+                self.fault("machine-axis-word", is.span(), message, "");
+                return None;
+            }
+        };
+        let Some(form) = expression.linear_form(&|name| self.values.get(name).copied()) else {
+            let message = format!("`{text}` is no sum of multiples of axes");
+            let help = "2 * X, J3 - J2, 0.5 * A + B";
+            self.fault("machine-axis-word", is.span(), message, help);
+            return None;
+        };
+        let mut row = Joints::default();
+        let mut fault = None;
+        for (name, multiple) in &form.terms {
+            match axes.iter().position(|axis| axis.name == *name) {
+                None => {
+                    fault = Some(format!(
+                        "{name} is neither an axis nor a parameter; {}",
+                        axes_are(axes)
+                    ));
+                }
+                Some(other)
+                    if other != place && !(own.joint.rotary && axes[other].joint.rotary) =>
+                {
+                    fault = Some(format!(
+                        "{} and {name} do not both turn; a word of a linear axis is a multiple of it alone",
+                        own.name
+                    ));
+                }
+                Some(other) => row[other] = *multiple,
+            }
+        }
+        if form.constant != 0.0 {
+            fault = Some(format!(
+                "{} is added; [axis.{}] zero says what it shows at the drawing's zero",
+                form.constant, own.name
+            ));
+        }
+        if row[place] == 0.0 {
+            fault.get_or_insert(format!("{} does not stand in its own word", own.name));
+        }
+        let shows = |joint: usize| row[joint] != 0.0 && axes[joint].range.is_some();
+        let plain = row[place] == 1.0 && form.terms.len() == 1;
+        if !plain && (0..axes.len()).any(shows) {
+            fault.get_or_insert(
+                "an axis that shows one turn (range) has a word of its own".to_owned(),
+            );
+        }
+        match fault {
+            Some(fault) => {
+                self.fault("machine-axis-word", is.span(), format!("`{text}`: {fault}"), "");
+                None
+            }
+            None => Some(row),
+        }
+    }
+
+    /// Travel of a word, as limits that depend on its axes.
+    fn word_travel(&mut self, word: &WordFile, axes: &[Axis], limits: &mut Vec<DependentLimit>) {
+        let Some(travel) = &word.travel else {
+            return;
+        };
+        let is = word.is.get_ref();
+        let [least, most] = [0, 1].map(|end| self.number(&travel.get_ref()[end]));
+        if least >= most {
+            let message =
+                format!("the travel goes from {least} to {most}: the first must be the smaller");
+            self.fault("machine-travel", travel.span(), message, "travel = [least, most]");
+        }
+        for keep in [format!("{is} >= {least}"), format!("{is} <= {most}")] {
+            let Ok(inequality) = parse_inequality(&keep) else {
+                continue;
+            };
+            let names = inequality.references().into_iter().filter_map(|(_, name)| {
+                let axis = axes.iter().position(|axis| axis.name == name);
+                let named = match axis {
+                    Some(joint) => Named::of(joint, &axes[joint]),
+                    None => Named::Parameter(self.values.get(name).copied()?),
+                };
+                Some((name.to_owned(), named))
+            });
+            let names = names.collect();
+            limits.push(DependentLimit::new(&keep, inequality, names));
+        }
+    }
+}

@@ -57,6 +57,7 @@ pub const LIBRARY: &[Row] = &[
     row("osp-mill", "ncl", 100.0, "out-of-reach"),
     row("pocketnc", "apt", 60.0, "over-travel"),
     row("quill-mill", "cls", 200.0, "out-of-reach"),
+    row("ram-fork", "apt", 100.0, "over-travel"),
     row("router", "ncl", 60.0, "out-of-reach"),
     row("ultrasonic-knife", "ncl", 50.0, "over-travel"),
     row("umc-750", "ncl", 100.0, "over-travel"),

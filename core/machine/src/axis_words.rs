@@ -360,7 +360,7 @@ impl AxisWords {
     /// there is none.
     pub fn half_decimal(&self) -> [f64; 2] {
         [&self.linear, &self.rotary].map(|words| {
-            let halves = words.iter().map(|word| 0.5 * word.unit / word.scale);
+            let halves = words.iter().map(|word| 0.5 * libm::fabs(word.unit) / word.scale);
             halves.fold(0.0, f64::max)
         })
     }

@@ -19,7 +19,7 @@ fn lathe(more: &[(&str, &str)]) -> Setup {
 
 #[test]
 fn a_diameter_is_a_multiple_of_the_axis_wherever_the_tip_goes() {
-    for (is, factor) in [("2 * X", 2.0), ("-X / 4", -0.25), ("X", 1.0)] {
+    for (is, factor) in [("2 * X", 2.0), ("X / 4", 0.25), ("X", 1.0)] {
         let made = lathe(&[("word.X.is", &format!("{is:?}"))]).made(FACE);
         let x = made.place("X");
         let reached = made.blocks.iter().map(|block| {
@@ -143,6 +143,7 @@ fn check_tells_what_words_do() {
     for (set, message) in [
         ("word.X.is=X + Y", "X and Y do not both turn"),
         ("word.B.is=C", "B does not stand in its own word"),
+        ("word.X.is=-2 * X", "[axis.X] reversed = true says so"),
         ("word.B.is=B * C", "no sum of multiples of axes"),
         ("word.B.is=B + 90", "90 is added; [axis.B] zero says"),
         ("word.Q.is=2 * Q", "[word.Q] is the word of no axis"),

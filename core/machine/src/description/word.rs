@@ -112,6 +112,12 @@ impl Builder<'_> {
         if row[place] == 0.0 {
             fault.get_or_insert(format!("{} does not stand in its own word", own.name));
         }
+        if form.terms.len() == 1 && row[place] < 0.0 {
+            let name = &own.name;
+            fault.get_or_insert(format!(
+                "{name} counts the other way; [axis.{name}] reversed = true says so"
+            ));
+        }
         let shows = |joint: usize| row[joint] != 0.0 && axes[joint].range.is_some();
         let plain = row[place] == 1.0 && form.terms.len() == 1;
         if !plain && (0..axes.len()).any(shows) {

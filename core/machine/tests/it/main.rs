@@ -8,6 +8,7 @@ mod batch;
 mod chains;
 mod check;
 mod declared;
+mod dependent_limit;
 mod derivatives;
 mod freedom;
 mod kept_tip;

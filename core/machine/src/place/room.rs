@@ -227,6 +227,8 @@ fn with_reserve(machine: &Machine, joint: usize, [least, most]: [f64; 2]) -> [f6
 /// The machine with linear axes that end nowhere near: what it is asked for shows how far they would have to go.
 pub fn opened(machine: &Machine) -> Machine {
     let mut opened = machine.clone();
+    // They bind linear axes, which the mount moves.
+    opened.limits.clear();
     for head in &mut opened.heads {
         head.machine = self::opened(&head.machine);
     }

@@ -1,0 +1,274 @@
+//! A stock along the ways of a machine: what a cutter removes of it, and what stays clear of what is left.
+
+use nalgebra::Vector3;
+use post_clearance::ALLOWANCE;
+use post_clearance::convex::Convex;
+use post_clearance::pair::View;
+use post_clearance::piece::{Piece, Way};
+use post_clearance::placement::Placement;
+use post_machine::kinematics::{Joint, Joints};
+use post_motion::path::turns;
+
+use crate::field::{Cutter, Field, Volume};
+use crate::profile::ToolPose;
+
+/// Pieces of a way that a body is looked at on; what is not proven then is not.
+const MOST_PIECES: u64 = 1 << 13;
+
+/// Pieces of a cut; of what is longer nothing is known any more for certain.
+const MOST_STEPS: u64 = 1 << 17;
+
+/// The nearest approach is known to this share of it.
+const CLOSE: f64 = 0.8;
+
+/// A body of revolution on the last link of a machine, and a field on its first.
+#[derive(Clone, Debug)]
+pub struct Mounted {
+    /// The frame of the field on the link of the part.
+    field: Placement,
+    view: View,
+    /// Where it begins, mm, and along which unit vector it goes on, machine frame, all axes at zero.
+    at_zero: ToolPose,
+}
+
+impl Mounted {
+    /// A body that begins at `at_zero`, all of it within `radius` of `centre`, mm, machine frame, all axes at zero.
+    pub fn new(
+        axes: &[Joint],
+        field: Placement,
+        at_zero: ToolPose,
+        (centre, radius): (Vector3<f64>, f64),
+    ) -> Self {
+        let view = View::new(axes, 0, axes.len(), centre, radius);
+        Self { field, view, at_zero }
+    }
+
+    /// Where its link stands in the frame of the field.
+    fn placement(&self, joints: &Joints) -> Placement {
+        let at = self.view.placement(joints);
+        Placement {
+            rotation: self.field.rotation.transpose() * at.rotation,
+            shift: self.field.back(at.shift),
+        }
+    }
+
+    /// Where it stands, frame of the field.
+    pub fn pose(&self, joints: &Joints) -> ToolPose {
+        let at = self.placement(joints);
+        ToolPose { tip: at.point(self.at_zero.tip), axis: at.direction(self.at_zero.axis) }
+    }
+
+    /// Both ends of a way that is straight and on which it does not turn.
+    pub fn straight(&self, way: &Way<'_>) -> Option<[ToolPose; 2]> {
+        let ends = way.ends.map(|stance| stance.joints);
+        let moving = ends[0].iter().zip(&ends[1]).filter(|(from, to)| from != to).count();
+        let bends = turns(way.solver.chain(), way.ends) || way.interpolation.is_curved();
+        let strays = bends || (way.independent && moving > 1);
+        (!strays).then(|| ends.each_ref().map(|joints| self.pose(joints)))
+    }
+
+    /// No point of it is farther from where it is at the middle of a piece, mm, anywhere on the piece.
+    fn reach(&self, piece: &Piece) -> f64 {
+        let middle = &piece.middle;
+        let by_levers = || self.view.reach_by_levers(middle, &self.view.levers(middle), piece);
+        match piece.independent {
+            true => by_levers(),
+            false => self.view.reach(middle, self.view.centre(middle), piece).min(by_levers()),
+        }
+    }
+}
+
+/// What a cutter removes of a field along a way, at feed: how much. Where it is not known how the axes go nothing is removed
+/// for certain but at the ends, and nothing is left for certain.
+pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) -> Volume {
+    let mut removed = Volume::default();
+    let straight = tool.straight(way);
+    let pose = |joints: &Joints| tool.pose(joints);
+    match straight {
+        Some(poses) => removed += field.remove_straight(cutter, poses),
+        None => {
+            for stance in way.ends {
+                removed += field.remove(cutter, &pose(&stance.joints));
+            }
+        }
+    }
+    let step = field.cell().max();
+    let mut waiting: Vec<Piece> = way.whole().into_iter().collect();
+    let mut lost = waiting.is_empty();
+    let mut count = 0;
+    while let Some(piece) = waiting.pop() {
+        count += 1;
+        let reach = tool.reach(&piece);
+        let fine = reach <= step;
+        let halves = match fine || count > MOST_STEPS {
+            true => None,
+            false => piece.halves(way, tool.view.widest(&piece).map_or(0, |(axis, _)| axis)),
+        };
+        if let Some([first, last]) = halves {
+            waiting.extend([last, first]);
+            continue;
+        }
+        let middle = pose(&piece.middle);
+        if straight.is_none() {
+            removed += field.remove(cutter, &middle);
+        }
+        match fine {
+            true => removed += field.doubt(cutter, &middle, reach),
+            false => lost = true,
+        }
+    }
+    if lost {
+        removed.at_most = removed.at_most.max(field.volume().at_most);
+        field.doubt_all();
+    }
+    removed
+}
+
+/// What is known of a body and a field on a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Found {
+    /// It stays clear of what may be left by no less than this, mm.
+    Clear(f64),
+    /// It is in what is left for certain.
+    Hits(Place),
+    /// It comes nearer to what may be left than is to be kept, or that is not known.
+    Unproven(Place),
+}
+
+/// Where a body stands that is not clear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Axis values, mm and radians.
+    pub joints: Joints,
+    /// It is no farther from what may be left, mm; infinite where that is not known.
+    pub at_most: f64,
+    /// The place, mm, frame of the field.
+    pub point: Vector3<f64>,
+}
+
+/// A body that is to stay clear of what is left.
+#[derive(Clone, Debug)]
+pub struct Watched {
+    mounted: Mounted,
+    profile: Vec<[f64; 2]>,
+    /// Its pieces, machine frame, all axes at zero.
+    pieces: Vec<Convex>,
+    known: Option<Known>,
+    /// The nearest that was found of what may be left, mm.
+    nearest: f64,
+    distances: u64,
+}
+
+/// A distance at a pose. What is left gets less, so that it holds for all that follows.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    joints: Joints,
+    centre: Vector3<f64>,
+    levers: Joints,
+    at_least: f64,
+}
+
+impl Watched {
+    /// A body of revolution, points [z, r] in mm, z from where it begins.
+    pub fn new(mounted: Mounted, profile: Vec<[f64; 2]>) -> Self {
+        let ToolPose { tip, axis } = mounted.at_zero;
+        let pieces = post_clearance::shape::turned_pieces(&profile, tip, axis);
+        Self { mounted, profile, pieces, known: None, nearest: f64::INFINITY, distances: 0 }
+    }
+
+    /// The nearest that was found of what may be left, mm.
+    pub fn nearest(&self) -> f64 {
+        self.nearest
+    }
+
+    /// Distances that were computed.
+    pub fn distances(&self) -> u64 {
+        self.distances
+    }
+
+    /// It is not known how it comes to where the next way begins.
+    pub fn forget(&mut self) {
+        self.known = None;
+    }
+
+    /// Whether it keeps a distance from what is left all along a way, mm. What cannot be told from one that is too short by
+    /// less than `within` counts as one.
+    pub fn along(&mut self, field: &mut Field, way: &Way<'_>, keep: f64, within: f64) -> Found {
+        let keep = keep.max(ALLOWANCE);
+        let Some(whole) = way.whole() else {
+            let joints = way.ends[0].joints;
+            return self.refuse(Place { joints, at_most: f64::INFINITY, point: Vector3::zeros() });
+        };
+        let mut waiting = vec![whole];
+        let mut clear_by = f64::INFINITY;
+        let mut computed = 0;
+        while let Some(piece) = waiting.pop() {
+            if let Some(left) = self.left(&piece, keep, within) {
+                clear_by = clear_by.min(left);
+                continue;
+            }
+            computed += 1;
+            self.distances += 1;
+            let at = self.mounted.placement(&piece.middle);
+            let placed: Vec<Convex> = self.pieces.iter().map(|piece| piece.placed(&at)).collect();
+            let apart = field.apart(&placed);
+            self.nearest = self.nearest.min(apart.at_most);
+            let place = Place { joints: piece.middle, at_most: apart.at_most, point: apart.point };
+            if apart.at_most < keep {
+                let pose = self.mounted.pose(&piece.middle);
+                // Whether axes that go for themselves come by there hangs on how fast each of them is.
+                let common = (!piece.independent).then(|| field.common(&self.profile, &pose));
+                return match common.flatten() {
+                    Some(point) => {
+                        self.known = None;
+                        Found::Hits(Place { at_most: 0.0, point, ..place })
+                    }
+                    None => self.refuse(place),
+                };
+            }
+            let view = &self.mounted.view;
+            self.known = Some(Known {
+                joints: piece.middle,
+                centre: view.centre(&piece.middle),
+                levers: view.levers(&piece.middle),
+                at_least: apart.at_least,
+            });
+            if let Some(left) = self.left(&piece, keep, within) {
+                clear_by = clear_by.min(left);
+                continue;
+            }
+            let reach = self.mounted.reach(&piece);
+            let widest = view.widest(&piece).map_or(0, |(axis, _)| axis);
+            let halves = match reach <= within || computed > MOST_PIECES {
+                true => None,
+                false => piece.halves(way, widest),
+            };
+            match halves {
+                Some([first, last]) => waiting.extend([last, first]),
+                None if apart.at_least - reach >= keep => {
+                    clear_by = clear_by.min(apart.at_least - reach);
+                }
+                None => return self.refuse(place),
+            }
+        }
+        Found::Clear(clear_by)
+    }
+
+    fn refuse(&mut self, place: Place) -> Found {
+        self.known = None;
+        Found::Unproven(place)
+    }
+
+    /// What is left of the distance that is known, mm, if it is enough.
+    fn left(&self, piece: &Piece, keep: f64, within: f64) -> Option<f64> {
+        let known = self.known.as_ref()?;
+        let view = &self.mounted.view;
+        let least = keep.max(CLOSE * self.nearest - within);
+        let mut reach = view.reach_by_levers(&known.joints, &known.levers, piece);
+        if known.at_least - reach < least && !piece.independent {
+            reach = reach.min(view.reach(&known.joints, known.centre, piece));
+        }
+        let left = known.at_least - reach;
+        (left >= least).then_some(left)
+    }
+}

@@ -1,0 +1,258 @@
+//! What is left of a stock, between two bounds.
+
+use nalgebra::Vector3;
+
+use crate::profile::{Frustum, Line, Run, ToolPose, extents, frusta, grown, hull, runs};
+use crate::rays::{Bound, Grid, Rays, Span, Stretch, common};
+use crate::sweep::Sweep;
+
+/// Prisms of all three directions together that a stock has if no resolution is said.
+const PRISMS: f64 = 150_000.0;
+
+/// Prisms that a stock has at most: of 24 bytes and more each.
+const MOST_PRISMS: f64 = 2e7;
+
+/// Prisms of a tile, in each direction of the section.
+pub(crate) const TILE: usize = 8;
+
+/// What is left of a stock. All points are in its own frame: along the axes of the stock's, from its low corner, mm.
+#[derive(Clone, Debug)]
+pub struct Field {
+    pub(crate) grid: Grid,
+    /// What may be left, along each axis: what all three have in common.
+    pub(crate) upper: [Rays; 3],
+    /// What certainly is, along Z.
+    pub(crate) lower: Rays,
+    /// From the lowest to the highest of what may be left in each tile of Z prisms: none where it is to be looked up.
+    pub(crate) tiles: Vec<Option<Stretch>>,
+    pub(crate) guess: Option<[Vector3<f64>; 2]>,
+}
+
+/// Volume, between two bounds, mm³.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Volume {
+    /// No less.
+    pub at_least: f64,
+    /// No more.
+    pub at_most: f64,
+}
+
+impl std::ops::AddAssign for Volume {
+    fn add_assign(&mut self, other: Self) {
+        self.at_least += other.at_least;
+        self.at_most += other.at_most;
+    }
+}
+
+/// What a tool removes: its cutting part as what is certainly inside of it, and all of it that may touch.
+#[derive(Clone, Debug)]
+pub struct Cutter {
+    pub(crate) inner: Vec<Run>,
+    pub(crate) outer: Vec<Frustum>,
+}
+
+impl Cutter {
+    /// The cutter of a profile, points [z, r] in mm, z from the tip.
+    pub fn new(profile: &[[f64; 2]]) -> Self {
+        Self { inner: runs(profile), outer: frusta(profile) }
+    }
+
+    /// A body that removes nothing for certain, and may remove what it touches.
+    pub fn vague(profile: &[[f64; 2]]) -> Self {
+        Self { inner: Vec::new(), outer: frusta(profile) }
+    }
+
+    /// It removes nothing for certain.
+    pub fn is_vague(&self) -> bool {
+        self.inner.is_empty()
+    }
+}
+
+impl Field {
+    /// Resolution that a stock of this size has if none is said, mm.
+    pub fn resolution(size: Vector3<f64>) -> f64 {
+        (sections(size) / PRISMS).sqrt()
+    }
+
+    /// The least resolution that a stock of this size may have, mm: of a finer one there is no room.
+    pub fn finest(size: Vector3<f64>) -> f64 {
+        (sections(size) / MOST_PRISMS).sqrt()
+    }
+
+    /// A stock of a size that nothing is in yet.
+    pub(crate) fn empty(size: Vector3<f64>, resolution: f64) -> Self {
+        let resolution = resolution.max(Self::finest(size));
+        let counts = [0, 1, 2].map(|axis| libm::ceil(size[axis] / resolution).max(1.0) as usize);
+        let cell = Vector3::from_fn(|axis, _| size[axis] / counts[axis] as f64);
+        let grid = Grid { cell, counts };
+        let tiles = counts[0].div_ceil(TILE) * counts[1].div_ceil(TILE);
+        Self {
+            upper: [0, 1, 2].map(|axis| Rays::new(axis, &grid, Bound::Upper)),
+            lower: Rays::new(2, &grid, Bound::Lower),
+            tiles: vec![None; tiles],
+            guess: None,
+            grid,
+        }
+    }
+
+    /// A box from the origin to a corner, mm.
+    pub fn block(size: Vector3<f64>, resolution: f64) -> Self {
+        let mut field = Self::empty(size, resolution);
+        for rays in field.upper.iter_mut().chain([&mut field.lower]) {
+            let whole = [0.0, size[rays.axis()]];
+            let [columns, rows] = rays.counts();
+            for place in 0..columns * rows {
+                rays.set([place % columns, place / columns], &[whole]);
+            }
+        }
+        field
+    }
+
+    /// A cylinder, the middles of its ends in mm, in a box from the origin to a corner.
+    pub fn cylinder(
+        size: Vector3<f64>,
+        ends: [Vector3<f64>; 2],
+        radius: f64,
+        resolution: f64,
+    ) -> Self {
+        let mut field = Self::block(size, resolution);
+        let axis = ends[1] - ends[0];
+        let pose = ToolPose { tip: ends[0], axis: axis.normalize() };
+        let profile = [[0.0, radius], [axis.norm(), radius]];
+        let mut inside = field.lower.clone();
+        // What it may touch is what the upper bound begins with, what is inside for certain the lower one.
+        let Self { upper, lower, .. } = &mut field;
+        for rays in upper {
+            let solid = grown(&frusta(&profile), rays.half_diagonal());
+            let mut kept = Vec::new();
+            let along = rays.axis();
+            let line = |point| hull(&solid, &Line::new(&pose, point, along));
+            rays.touch(&extents(&solid, &pose), &line, &mut |place, stretch| {
+                kept.push((place, stretch));
+            });
+            rays.fill(&kept, size[along]);
+        }
+        let mut kept = Vec::new();
+        for run in runs(&profile) {
+            let line = |point| run.inside(&Line::new(&pose, point, 2));
+            inside.carve(&run.extents(&pose), &line, &mut |place, _, stretch| {
+                kept.push((place, stretch));
+            });
+        }
+        lower.fill(&kept, size.z);
+        field
+    }
+
+    /// Takes away what a cutter certainly removes where it stands; what was left there.
+    pub fn remove(&mut self, cutter: &Cutter, pose: &ToolPose) -> Volume {
+        let mut removed = Volume::default();
+        for run in &cutter.inner {
+            let extents = run.extents(pose);
+            let line = |point, axis| run.inside(&Line::new(pose, point, axis));
+            removed += self.carve(&extents, &line);
+        }
+        removed
+    }
+
+    /// Takes away what a cutter certainly removes that goes straight without turning; what was left there.
+    pub fn remove_straight(&mut self, cutter: &Cutter, poses: [ToolPose; 2]) -> Volume {
+        let [from, to] = poses;
+        let way = to.tip - from.tip;
+        let length = way.norm();
+        let mut removed = Volume::default();
+        for run in &cutter.inner {
+            // Long ways go in parts, so that their boxes hold little besides; they overlap by a cell, so that no prism lies
+            // in two of them.
+            let part = 2.0 * run.most().max(self.grid.cell.max());
+            let parts = libm::ceil(length / part).max(1.0);
+            let over = if length > 0.0 { self.grid.cell.norm() / length } else { 0.0 };
+            for place in 0..parts as u64 {
+                let start = (place as f64 / parts - over).max(0.0);
+                let end = ((place + 1) as f64 / parts + over).min(1.0);
+                let pose = ToolPose { tip: from.tip + way * start, ..from };
+                let sweep = Sweep { run, pose, way: way * (end - start) };
+                removed += self.carve(&sweep.extents(), &|point, axis| sweep.inside(point, axis));
+            }
+        }
+        removed
+    }
+
+    /// Takes away what is inside of a convex body for certain; what was left of it.
+    fn carve(
+        &mut self,
+        extents: &[Vector3<f64>; 2],
+        line: &dyn Fn(Vector3<f64>, usize) -> Option<Stretch>,
+    ) -> Volume {
+        let Self { upper, lower, tiles, grid, .. } = self;
+        let width = grid.counts[0].div_ceil(TILE);
+        let (mut length, mut at_most) = (0.0, 0.0);
+        for (axis, rays) in upper.iter_mut().enumerate() {
+            let taken = &mut |place: [usize; 2], left: &[Span], stretch: Stretch| {
+                if axis == 2 {
+                    tiles[place[1] / TILE * width + place[0] / TILE] = None;
+                    // What another part of the same cut has removed was counted there.
+                    length += common(left, lower.at(place), stretch);
+                }
+            };
+            // That of the last, along Z.
+            at_most = rays.carve(extents, &|point| line(point, axis), taken);
+        }
+        Volume { at_least: length * lower.area(), at_most }
+    }
+
+    /// What is within `by` of a cutter, mm, is not left for certain any more; what may be left there.
+    pub fn doubt(&mut self, cutter: &Cutter, pose: &ToolPose, by: f64) -> Volume {
+        let Self { upper, lower, .. } = self;
+        let body = grown(&cutter.outer, by + lower.half_diagonal());
+        let mut length = 0.0;
+        let line = |point| hull(&body, &Line::new(pose, point, 2));
+        lower.touch(&extents(&body, pose), &line, &mut |place, stretch| {
+            length += upper[2].left(place, stretch);
+        });
+        Volume { at_least: 0.0, at_most: length * lower.area() }
+    }
+
+    /// Nothing is left for certain: it is not known where a tool has been.
+    pub fn doubt_all(&mut self) {
+        self.lower.clear();
+    }
+
+    /// What is left.
+    pub fn volume(&self) -> Volume {
+        let most = self.upper.iter().map(Rays::volume).fold(f64::INFINITY, f64::min);
+        Volume { at_least: self.lower.volume(), at_most: most }
+    }
+
+    /// Edges of its cells, mm.
+    pub fn cell(&self) -> Vector3<f64> {
+        self.grid.cell
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        self.upper.iter().chain([&self.lower]).map(Rays::bytes).sum()
+    }
+
+    /// Whether a point may be left.
+    pub fn may_hold(&self, point: Vector3<f64>) -> bool {
+        self.upper.iter().all(|rays| rays.holds(point))
+    }
+
+    /// Whether a point is left for certain.
+    pub fn holds(&self, point: Vector3<f64>) -> bool {
+        self.lower.holds(point)
+    }
+
+    /// A point of a body that is left for certain, of convex parts of a profile.
+    pub fn common(&self, profile: &[[f64; 2]], pose: &ToolPose) -> Option<Vector3<f64>> {
+        runs(profile).iter().find_map(|run| {
+            let line = |point| run.inside(&Line::new(pose, point, 2));
+            self.lower.meets(&run.extents(pose), &line)
+        })
+    }
+}
+
+/// Sum of the sections of a box across its three axes, mm².
+fn sections(size: Vector3<f64>) -> f64 {
+    size.x * size.y + size.y * size.z + size.z * size.x
+}

@@ -1,0 +1,119 @@
+//! Stocks of every shape, and distances from them.
+
+use std::f64::consts::PI;
+
+use nalgebra::Vector3;
+use post_clearance::convex::Convex;
+use post_clearance::distance::of_convex;
+use post_removal::field::Field;
+use post_testkit::{Rng, randomised};
+
+type V = Vector3<f64>;
+
+/// A closed mesh of a frustum along Z with so many sides.
+fn prism(centre: V, radii: [f64; 2], height: f64, sides: usize) -> Vec<[V; 3]> {
+    let rim = |end: usize, side: usize| {
+        let angle = 2.0 * PI * (side % sides) as f64 / sides as f64 + 0.1;
+        centre
+            + V::new(
+                radii[end] * libm::cos(angle),
+                radii[end] * libm::sin(angle),
+                end as f64 * height,
+            )
+    };
+    let middles = [centre, centre + V::z() * height];
+    (0..sides)
+        .flat_map(|side| {
+            let [a, b] = [rim(0, side), rim(0, side + 1)];
+            let [c, d] = [rim(1, side), rim(1, side + 1)];
+            [[middles[0], b, a], [middles[1], c, d], [a, b, d], [a, d, c]]
+        })
+        .collect()
+}
+
+#[test]
+fn a_cylinder_and_its_mesh_lie_between_their_bounds() {
+    let size = V::new(22.0, 24.0, 14.0);
+    let truth = PI * 81.0 * 12.0;
+    let mut last = [f64::INFINITY; 2];
+    for resolution in [1.0, 0.5, 0.25] {
+        let ends = [V::new(11.0, 12.0, 1.0), V::new(11.0, 12.0, 13.0)];
+        let round = Field::cylinder(size, ends, 9.0, resolution);
+        let mesh = Field::mesh(size, &prism(ends[0], [9.0; 2], 12.0, 720), resolution);
+        for (field, last) in [round, mesh].iter().zip(&mut last) {
+            let volume = field.volume();
+            assert!(
+                volume.at_least <= truth && truth <= volume.at_most + 0.1,
+                "{volume:?} {truth}"
+            );
+            let between = volume.at_most - volume.at_least;
+            assert!(between < 0.7 * *last, "{between} {last}");
+            *last = between;
+        }
+    }
+    assert!(last.iter().all(|last| *last < 0.12 * truth), "{last:?}");
+}
+
+/// Points inside of a mesh may be left, those outside are not for certain.
+#[test]
+fn a_mesh_holds_what_it_encloses() {
+    let (rounds, mut rng) = randomised(60, 3311);
+    for _ in rounds {
+        let sides = 3 + rng.pick(9);
+        let radii = [rng.range(2.0, 9.0), rng.range(2.0, 9.0)];
+        let height = rng.range(3.0, 15.0);
+        let centre = V::new(10.0, 10.0, 1.0);
+        let mut triangles = prism(centre, radii, height, sides);
+        // A hollow in it, its faces towards the inside of the hollow.
+        let hollow = rng.pick(2) == 0;
+        let inner = [0.4 * radii[0], 0.4 * radii[1]];
+        if hollow {
+            let low = centre + V::z() * 0.2 * height;
+            let faces = prism(low, inner, 0.6 * height, sides);
+            triangles.extend(faces.into_iter().map(|[a, b, c]| [a, c, b]));
+        }
+        let field = Field::mesh(V::new(20.0, 20.0, 17.0), &triangles, rng.range(0.3, 1.0));
+        for _ in 0..400 {
+            let point = V::new(rng.range(0.0, 20.0), rng.range(0.0, 20.0), rng.range(0.0, 17.0));
+            let seen: f64 = triangles.iter().map(|corners| angle(corners, point)).sum();
+            let inside = (seen / (4.0 * PI)).abs() > 0.5;
+            match inside {
+                true => assert!(field.may_hold(point), "{point:?}"),
+                false => assert!(!field.holds(point), "{point:?}"),
+            }
+        }
+    }
+}
+
+/// Solid angle of a triangle.
+fn angle(corners: &[V; 3], from: V) -> f64 {
+    let [a, b, c] = corners.map(|corner| corner - from);
+    let [x, y, z] = [a.norm(), b.norm(), c.norm()];
+    let below = x * y * z + a.dot(&b) * z + b.dot(&c) * x + c.dot(&a) * y;
+    2.0 * libm::atan2(a.dot(&b.cross(&c)), below)
+}
+
+fn body(rng: &mut Rng) -> Convex {
+    let at = V::new(rng.range(-20.0, 40.0), rng.range(-20.0, 40.0), rng.range(-10.0, 50.0));
+    let axis = rng.direction();
+    let ends = [at, at + axis * rng.range(0.1, 20.0)];
+    Convex::frustum(ends, axis, [rng.range(0.0, 9.0), rng.range(0.0, 9.0)])
+}
+
+/// The distance from a block is that of its one box, however it is cut into cells.
+#[test]
+fn the_distance_from_a_block_is_that_of_a_box() {
+    let (rounds, mut rng) = randomised(300, 3312);
+    for _ in rounds {
+        let size = V::new(rng.range(5.0, 30.0), rng.range(5.0, 30.0), rng.range(5.0, 30.0));
+        let mut field = Field::block(size, rng.range(0.7, 4.0));
+        for _ in 0..4 {
+            let body = body(&mut rng);
+            let whole = of_convex(&body, &Convex::block(V::zeros(), size));
+            let found = field.apart(std::slice::from_ref(&body));
+            assert!(found.at_least <= whole.at_most + 1e-4, "{found:?} {whole:?}");
+            assert!(found.at_most >= whole.at_least - 1e-4, "{found:?} {whole:?}");
+            assert!(found.at_least >= 0.97 * whole.at_least - 1e-4, "{found:?} {whole:?}");
+        }
+    }
+}

@@ -10,19 +10,20 @@ use post_job::failure::Failure;
 use post_job::files::PathArg;
 use post_job::nc_program::NcControl;
 use post_job::session::Session;
-use post_machine::diagnostic::Severity;
+use post_machine::diagnostic::{Diagnostic, Severity};
 
 /// Proves that nothing hits anything while an NC program runs, rapids and ways between the cuts among it.
 ///
 /// Bodies are those of the machine file: `[solids]`, `[fixture.NAME]`, `[stock]`, and the outlines of its tools
 /// (`[tools.N]`). Of each pair that moves against one another it is proven that they keep the distance of `[clearance]` at
 /// every instant of every motion, not at samples of it; what is not proven counts as a hit. Cutters may be in the stock at
-/// feed. The stock is that before the first cut: nothing is taken from it.
+/// feed. The stock is that before the first cut, unless `[stock] cut = true`: then what is certainly cut is taken from it.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   post clearance part.h --machine dmu50-with-vise.toml
   post clearance part.nc --machine my-mill.toml --cl part.cls
   post clearance part.nc -m my-mill.toml --set clearance.keep=2
+  post clearance part.nc -m my-mill.toml --set stock.cut=true --stock-stl left.stl
 
 Exit codes: 0 proven: nothing that has a body hits anything; 1 something hits, or that it does not is not proven, or a
 block was refused; 2 the command line is wrong.")]
@@ -37,6 +38,11 @@ pub struct ClearanceArguments {
     /// The CL file of the program: how thick the cutters are that the machine file does not describe (CUTTER).
     #[arg(long, value_name = "CL-FILE", value_parser = file())]
     cl: Option<PathArg>,
+
+    /// Writes what may be left of a stock that is cut (`[stock] cut = true`) as an STL file: closed, mm, as the CL file has
+    /// the part, exact to within a cell; `-` is standard output.
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    stock_stl: Option<PathArg>,
 }
 
 /// Does as the arguments say.
@@ -44,8 +50,21 @@ pub fn run(session: &Session, arguments: &ClearanceArguments) -> Result<(), Fail
     let control = NcControl::new(session, &arguments.program.settings())?;
     let ClearanceArguments { input, cl, .. } = arguments;
     let request = ClearanceRequest { input: input.clone(), cl: cl.clone() };
-    let found = clearance::clearance(session, &control, &request)?;
-    terminal::print_beside(session, &clearance::text::text(&found), false);
+    let mut found = clearance::clearance(session, &control, &request)?;
+    let printed = match (&arguments.stock_stl, &found.left) {
+        (Some(path), Some(left)) => {
+            left.write_stl(session, path)?;
+            *path == PathArg::Standard
+        }
+        (Some(_), None) => {
+            let message = "there is no stock that is cut: no STL file is written";
+            let help = "[stock] of the machine file has its shape, and cut = true";
+            found.findings.push(Diagnostic::error("clearance-body", message).help(help));
+            false
+        }
+        (None, _) => false,
+    };
+    terminal::print_beside(session, &clearance::text::text(&found), printed);
     let (errors, warnings): (Vec<_>, Vec<_>) =
         found.findings.into_iter().partition(|finding| finding.severity == Severity::Error);
     session.findings(&warnings);

@@ -22,6 +22,7 @@ mod common;
 mod compensate;
 mod convert;
 mod course;
+mod cut_stock;
 mod cycle_time;
 mod dialects;
 mod diff;

@@ -13,7 +13,7 @@ use crate::field::{Cutter, Field, Volume};
 use crate::profile::ToolPose;
 
 /// Pieces of a way that a body is looked at on; what is not proven then is not.
-const MOST_PIECES: u64 = 1 << 13;
+const MOST_PIECES: u64 = 1 << 11;
 
 /// Pieces of a cut; of what is longer nothing is known any more for certain.
 const MOST_STEPS: u64 = 1 << 17;

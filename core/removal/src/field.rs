@@ -61,11 +61,6 @@ impl Cutter {
     pub fn vague(profile: &[[f64; 2]]) -> Self {
         Self { inner: Vec::new(), outer: frusta(profile) }
     }
-
-    /// It removes nothing for certain.
-    pub fn is_vague(&self) -> bool {
-        self.inner.is_empty()
-    }
 }
 
 impl Field {
@@ -127,7 +122,7 @@ impl Field {
             let mut kept = Vec::new();
             let along = rays.axis();
             let line = |point| hull(&solid, &Line::new(&pose, point, along));
-            rays.touch(&extents(&solid, &pose), &line, &mut |place, stretch| {
+            rays.touch(&extents(&solid, &pose), None, &line, &mut |place, stretch| {
                 kept.push((place, stretch));
             });
             rays.fill(&kept, size[along]);
@@ -206,7 +201,7 @@ impl Field {
         let body = grown(&cutter.outer, by + lower.half_diagonal());
         let mut length = 0.0;
         let line = |point| hull(&body, &Line::new(pose, point, 2));
-        lower.touch(&extents(&body, pose), &line, &mut |place, stretch| {
+        lower.touch(&extents(&body, pose), Some(&upper[2]), &line, &mut |place, stretch| {
             length += upper[2].left(place, stretch);
         });
         Volume { at_least: 0.0, at_most: length * lower.area() }

@@ -7,6 +7,8 @@
 //! | [`field`] | prisms along X, Y and Z: what may be left, and what certainly is |
 //! | [`mesh`] | a stock from a closed mesh |
 //! | [`near`] | how far a body is from what may be left |
+//! | [`surface`] | the surface of what may be left, as triangles |
+//! | [`compare`] | what is left against the part that is wanted |
 //! | [`been`] | where a tool has been: what it need not be held against |
 //! | [`along`] | all of this along the ways of a machine |
 //!
@@ -24,9 +26,11 @@
 
 pub mod along;
 pub mod been;
+pub mod compare;
 pub mod field;
 pub mod mesh;
 pub mod near;
 pub mod profile;
 pub mod rays;
+pub mod surface;
 mod sweep;

@@ -26,6 +26,9 @@ pub type Span = [f32; 2];
 /// A stretch along a line, mm.
 pub type Stretch = [f64; 2];
 
+/// Spans that a prism has at most, so that memory is bounded by the field and not by the program.
+const MOST_SPANS: usize = 32;
+
 fn rounded_down(value: f64) -> f32 {
     let near = value as f32;
     if f64::from(near) > value { near.next_down() } else { near }
@@ -63,7 +66,30 @@ impl Bound {
             (Self::Upper, [one, other]) if one[1] >= other[0] => {}
             _ => drop(spans.splice(first..first + count, kept)),
         }
-        before - length(spans)
+        self.hold_down(spans);
+        (before - length(spans)).max(0.0)
+    }
+
+    /// Keeps to [`MOST_SPANS`]: the narrowest gap counts as left, or the shortest span as gone.
+    fn hold_down(self, spans: &mut Vec<Span>) {
+        while spans.len() > MOST_SPANS {
+            let shortest = |sizes: &mut dyn Iterator<Item = f32>| {
+                let least = sizes.enumerate().min_by(|one, other| one.1.total_cmp(&other.1));
+                least.map_or(0, |(place, _)| place)
+            };
+            match self {
+                Self::Upper => {
+                    let mut gaps = spans.windows(2).map(|pair| pair[1][0] - pair[0][1]);
+                    let place = shortest(&mut gaps);
+                    spans[place][1] = spans[place + 1][1];
+                    spans.remove(place + 1);
+                }
+                Self::Lower => {
+                    let place = shortest(&mut spans.iter().map(|[low, high]| high - low));
+                    spans.remove(place);
+                }
+            }
+        }
     }
 }
 
@@ -209,21 +235,28 @@ impl Rays {
     }
 
     /// Takes away what a body may touch: of each prism the stretch on which the line through its middle is inside of it,
-    /// grown by what the section is wide. `extents` are those of the grown body.
+    /// grown by what the section is wide. `extents` are those of the grown body; prisms in which neither these nor those of
+    /// `other` have anything left within them are passed over.
     pub fn touch(
         &mut self,
         extents: &[Vector3<f64>; 2],
+        other: Option<&Self>,
         line: &dyn Fn(Vector3<f64>) -> Corner,
         taken: &mut dyn FnMut([usize; 2], Stretch),
     ) {
         let Some([columns, rows]) = self.places(extents, 1.0) else { return };
+        let along = [extents[0][self.axis], extents[1][self.axis]];
         for row in rows[0]..rows[1] {
             for column in columns[0]..columns[1] {
-                let place = row * self.counts[0] + column;
-                let middle = [column, row].map(|cells| cells as f64 + 0.5);
+                let place = [column, row];
+                let empty = |rays: &Self| rays.hull(place, along).is_none();
+                if other.is_some_and(empty) && empty(self) {
+                    continue;
+                }
+                let middle = place.map(|cells| cells as f64 + 0.5);
                 if let Some(stretch) = line(self.point(middle)) {
-                    taken([column, row], stretch);
-                    self.bound.take(&mut self.spans[place], stretch);
+                    taken(place, stretch);
+                    self.bound.take(&mut self.spans[row * self.counts[0] + column], stretch);
                 }
             }
         }

@@ -29,6 +29,21 @@ pub(super) struct ToolShape<'a> {
     pub radius: Option<f64>,
 }
 
+impl ToolShape<'_> {
+    /// What cuts: points [z, r], z in mm from the tip.
+    pub fn cutter(&self) -> Option<Vec<[f64; 2]>> {
+        let drawn = self.outline.map(|outline| outline.cutter.clone());
+        let drawn = drawn.filter(|points| !points.is_empty());
+        // Nothing says where it ends: up to the gauge point it is as thick as where it cuts.
+        drawn.or_else(|| self.radius.map(|radius| vec![[0.0, radius], [self.length, radius]]))
+    }
+
+    /// The shape of its cutter is known, and not its radius alone.
+    pub fn is_drawn(&self) -> bool {
+        self.outline.is_some_and(|outline| !outline.cutter.is_empty())
+    }
+}
+
 /// The bodies of a machine without a tool: what is held and what holds it first. What is wrong with them is said; a body
 /// that cannot be had is an error.
 pub(super) fn of_machine(machine: &Machine, findings: &mut Vec<Diagnostic>) -> Vec<Body> {
@@ -77,16 +92,13 @@ pub(super) fn of_tool(
     tool: &ToolShape<'_>,
     lacks: &mut Vec<String>,
 ) -> Vec<Body> {
-    let ToolShape { number, length, outline, radius } = *tool;
+    let ToolShape { number, length, outline, .. } = *tool;
     let link = machine.axes.len();
     let tip = machine.gauge - machine.tool_axis * length;
     let empty = Vec::new();
     let holder = outline.map_or(&empty, |outline| &outline.holder);
-    let cutter = outline.map(|outline| outline.cutter.clone()).filter(|points| !points.is_empty());
-    // Nothing says where it ends: up to the gauge point it is as thick as where it cuts.
-    let cutter = cutter.or_else(|| radius.map(|radius| vec![[0.0, radius], [length, radius]]));
     let holder = Shape::turned(holder, machine.gauge, -machine.tool_axis);
-    let cutter = cutter.and_then(|points| Shape::turned(&points, tip, machine.tool_axis));
+    let cutter = tool.cutter().and_then(|points| Shape::turned(&points, tip, machine.tool_axis));
     let mut bodies = Vec::new();
     for (kind, what, shape) in
         [(BodyKind::Holder, "holder", holder), (BodyKind::Cutter, "cutter", cutter)]
@@ -142,7 +154,7 @@ fn given_shape(
     shape
 }
 
-fn unusable(name: &str, why: &str, place: &Option<SourcePlace>) -> Diagnostic {
+pub(super) fn unusable(name: &str, why: &str, place: &Option<SourcePlace>) -> Diagnostic {
     Diagnostic::error("clearance-body", format!("the body {name} cannot be used: {why}"))
         .at(place.clone())
         .help("nothing is proven of a body that is not there: coordinates are mm, files are STL")
@@ -151,10 +163,40 @@ fn unusable(name: &str, why: &str, place: &Option<SourcePlace>) -> Diagnostic {
 /// The shape in an STL file, its corners placed by `map`.
 fn mesh(
     path: &Path,
-    (place, name): (&Option<SourcePlace>, &str),
+    at: (&Option<SourcePlace>, &str),
     map: &dyn Fn(Vector3<f64>) -> Vector3<f64>,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Shape> {
+    let (_, shape) = read_mesh(path, at, map, findings)?;
+    findings.extend(mesh_fault(at.1, shape.faults(), at.0));
+    Some(shape)
+}
+
+/// The triangles of a body in an STL file that are a closed surface; one that is none cannot be used.
+pub(super) fn closed_mesh(
+    path: &Path,
+    (place, name): (&Option<SourcePlace>, &str),
+    findings: &mut Vec<Diagnostic>,
+) -> Option<Vec<[Vector3<f64>; 3]>> {
+    let (triangles, shape) = read_mesh(path, (place, name), &|corner| corner, findings)?;
+    let MeshFaults { open, inverted, .. } = shape.faults();
+    if open + inverted > 0 {
+        let why = format!(
+            "what is inside is known of closed surfaces alone, and {open} edges of its mesh are not those of two triangles, at {inverted} two do not agree what is outside"
+        );
+        findings.push(unusable(name, &why, place));
+        return None;
+    }
+    Some(triangles)
+}
+
+/// The triangles in an STL file, their corners placed by `map`, and their shape.
+fn read_mesh(
+    path: &Path,
+    (place, name): (&Option<SourcePlace>, &str),
+    map: &dyn Fn(Vector3<f64>) -> Vector3<f64>,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<(Vec<[Vector3<f64>; 3]>, Shape)> {
     let shown = path.display();
     let mut refuse = |why: String| {
         findings.push(unusable(name, &format!("{shown}: {why}"), place));
@@ -181,10 +223,7 @@ fn mesh(
         }),
     });
     match read {
-        Ok(shape) => {
-            findings.extend(mesh_fault(name, shape.faults(), place));
-            Some(shape)
-        }
+        Ok(shape) => Some((triangles, shape)),
         Err(why) => {
             refuse(why);
             None

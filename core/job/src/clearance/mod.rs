@@ -2,6 +2,7 @@
 
 mod bodies;
 mod choice;
+mod left;
 mod names;
 mod of_job;
 mod summary;
@@ -28,7 +29,9 @@ use bodies::link_name;
 use watch::ClearanceWatch;
 
 pub(crate) use choice::ChoiceBodies;
+pub use left::StockLeft;
 pub use of_job::of_job;
+pub use post_removal::compare::Farthest;
 pub use summary::{ClearanceSummary, PairSummary};
 pub use watch::{Hearer, PairRow};
 
@@ -54,6 +57,8 @@ pub struct ClearanceFound {
     pub distances: u64,
     /// What is not clear, and what could not be read; errors and warnings.
     pub findings: Vec<Diagnostic>,
+    /// What is left of a stock that gets less by what is cut.
+    pub left: Option<StockLeft>,
 }
 
 impl ClearanceFound {
@@ -100,7 +105,8 @@ pub fn prove(
     let bodies = bodies::of_machine(machine, &mut findings);
     let diameters = tools.iter().filter_map(|tool| Some((tool.number, tool.diameter?))).collect();
     let mut run = ProgramRun::new(control.program_with_rapids(name, text)?);
-    let mut watch = ClearanceWatch::new(control, bodies, diameters, hear);
+    let stock = left::CutStock::new(machine, &mut findings);
+    let mut watch = ClearanceWatch::new(control, bodies, diameters, hear, stock);
     while let Some(done) = run.block() {
         for what in done.iter() {
             watch.take(what);

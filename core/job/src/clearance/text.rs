@@ -1,6 +1,6 @@
 //! The table of what was proven.
 
-use super::ClearanceFound;
+use super::{ClearanceFound, Farthest, StockLeft};
 use crate::text::{at_least, number};
 use crate::text_table::{NamedValues, TextTable};
 
@@ -10,6 +10,27 @@ pub fn text(found: &ClearanceFound) -> String {
     rows.row("motions", found.motions);
     rows.row("pairs of bodies", found.pairs.len());
     rows.row("distances computed", found.distances);
+    if let Some(StockLeft { before, left, cell, part, .. }) = &found.left {
+        let between = |low: f64, high: f64| format!("{} to {}", number(low, 0), number(high, 0));
+        rows.row("stock left, mm³", between(left.at_least, left.at_most));
+        let cut = [before.at_least - left.at_most, before.at_most - left.at_least];
+        rows.row("cut of it, mm³", between(cut[0].max(0.0), cut[1]));
+        rows.row("known to within, mm", number(cell.max(), 3));
+        if let Some(part) = part {
+            let far = |far: &Farthest| {
+                let range = format!("{} to {}", number(far.at_least, 3), number(far.at_most, 3));
+                let [x, y, z]: [f64; 3] = far.point.into();
+                match far.at_least > 0.0 {
+                    true => format!("{range}, at [{x:.3}, {y:.3}, {z:.3}]"),
+                    false => range,
+                }
+            };
+            rows.row("cut into the part, mm³", between(part.gouge.at_least, part.gouge.at_most));
+            rows.row("as deep as, mm", far(&part.deepest));
+            rows.row("left on the part, mm³", between(part.rest.at_least, part.rest.at_most));
+            rows.row("as thick as, mm", far(&part.thickest));
+        }
+    }
     if !found.lacks.is_empty() {
         rows.row("without a body, not looked at", found.lacks.join(", "));
     }

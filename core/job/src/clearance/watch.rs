@@ -9,6 +9,7 @@ use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use post_readback::{BlockEffect, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState};
 
 use super::bodies::{ToolShape, of_tool};
+use super::left::{Against, CutStock};
 use super::{ClearanceFound, proof};
 use crate::nc_program::NcControl;
 use crate::text::number as number_text;
@@ -43,6 +44,8 @@ pub(super) struct ClearanceWatch<'a, 'h> {
     fixed: Vec<Body>,
     diameters: Vec<(u32, f64)>,
     proof: Proof,
+    /// The stock, if it gets less by what is cut.
+    stock: Option<CutStock>,
     /// The tool whose bodies are looked at, and its length, mm.
     tool: Option<(u32, Option<f64>)>,
     /// The cutter is nowhere thinner than nearer to its tip.
@@ -57,6 +60,8 @@ pub(super) struct ClearanceWatch<'a, 'h> {
     /// Who hears how near the nearest two bodies come on each line, mm, and how that is found.
     told: Option<(&'a mut Hearer<'h>, Proof)>,
     found: ClearanceFound,
+    /// Tools of whose cutter no more than the radius is known, by the line from which they cut a stock that gets less.
+    undrawn: Vec<(u64, u32)>,
     /// What is wrong by line.
     faults: Vec<(u64, String, &'static str)>,
 }
@@ -67,6 +72,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         fixed: Vec<Body>,
         diameters: Vec<(u32, f64)>,
         hear: Option<&'a mut Hearer<'h>>,
+        stock: Option<CutStock>,
     ) -> Self {
         let found = ClearanceFound {
             pairs: Vec::new(),
@@ -74,6 +80,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             motions: 0,
             distances: 0,
             findings: Vec::new(),
+            left: None,
         };
         let proof = proof(&control.machine, fixed.clone());
         Self {
@@ -82,6 +89,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             control,
             fixed,
             diameters,
+            stock,
             tool: None,
             widens: true,
             came: false,
@@ -89,6 +97,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             misled: None,
             rows: BTreeMap::new(),
             found,
+            undrawn: Vec::new(),
             faults: Vec::new(),
         }
     }
@@ -108,6 +117,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 );
                 self.faults.push((*line, message, "put its blocks into the program"));
                 self.proof.forget();
+                self.stock.iter_mut().for_each(CutStock::forget);
             }
             BlockEffect::Event { .. } | BlockEffect::State(_) => {}
         }
@@ -134,8 +144,12 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         // What goes along its own axis sweeps what it has been in before, if it is nowhere thinner above.
         let came = std::mem::replace(&mut self.came, true);
         let cuts = !rapid || (came && self.widens && withdraws(motion, way.independent));
+        let lessens = self.stock.is_some();
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
+            if lessens && CutStock::looks(kinds) {
+                return false;
+            }
             let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
             !(touches && cuts)
         };
@@ -145,10 +159,20 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         {
             hear(motion.line, distance);
         }
+        let mut ways = vec![way];
         if way.independent && motion.turns() && motion.way != Interpolation::Axes {
             // Where the control keeps the tip it may do so at rapid as well: the axes go another way then.
             let way = Way { independent: false, ..way };
             self.proof.take(&Move { way, rapid, line: motion.line }, looks);
+            ways.push(way);
+        }
+        let rules = &self.control.machine.clearance;
+        let keep = if rapid { rules.rapid } else { rules.keep };
+        let against = Against { motion, ways: &ways, rapid, keep };
+        if self.stock.as_mut().is_some_and(|stock| stock.motion(&against)) {
+            let message = "a cutter is fed into the stock while the spindle stands: nothing is cut";
+            let help = "start the spindle before the cut: M3 or M4";
+            self.faults.push((motion.line, message.to_owned(), help));
         }
     }
 
@@ -202,7 +226,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 format!("how long tool {number} is is not known: nothing is proven of it");
             let help = "[tools] of the machine file, --offsets or --tool-length";
             self.faults.push((motion.line, message, help));
-            self.begin(bodies);
+            self.begin(bodies, None, motion.line);
             return;
         };
         let outline = machine.outline(number);
@@ -217,14 +241,23 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         let profile = outline.map_or(&[][..], |outline| &outline.cutter);
         self.widens =
             profile.windows(2).all(|pair| pair[0][0] <= pair[1][0] && pair[0][1] <= pair[1][1]);
-        self.begin(bodies);
+        self.begin(bodies, Some(&tool), motion.line);
     }
 
-    /// The proof begins again with these bodies.
-    fn begin(&mut self, bodies: Vec<Body>) {
-        self.proof = proof(&self.control.machine, bodies);
+    /// The proof begins again with these bodies, those of `tool` among them, which is called in `line`.
+    fn begin(&mut self, bodies: Vec<Body>, tool: Option<&ToolShape<'_>>, line: u64) {
+        let machine = &self.control.machine;
+        self.proof = proof(machine, bodies);
         if let Some((_, told)) = &mut self.told {
             *told = self.proof.clone();
+        }
+        if let Some(stock) = &mut self.stock {
+            stock.change_tool(machine, tool, &self.proof);
+            if let Some(tool) = tool.filter(|tool| !tool.is_drawn())
+                && !self.undrawn.iter().any(|(_, known)| *known == tool.number)
+            {
+                self.undrawn.push((line, tool.number));
+            }
         }
     }
 
@@ -270,15 +303,50 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
     /// What came of the program `name`.
     pub fn finish(mut self, name: &str) -> ClearanceFound {
         self.put_down();
+        if let Some(stock) = self.stock.take() {
+            let (rows, distances, left) = stock.finish();
+            for row in rows {
+                self.rows.insert(row.names.clone(), row);
+            }
+            self.found.distances += distances;
+            if let Some(part) = &left.part
+                && part.deepest.at_least > 0.0
+            {
+                let [x, y, z] = part.deepest.point.into();
+                let message = format!(
+                    "the part is cut into, {} mm deep or more at [{x:.3}, {y:.3}, {z:.3}]",
+                    Short(part.deepest.at_least)
+                );
+                let help = "the path, the tool or [stock] part is another one";
+                self.found.findings.push(Diagnostic::error("clearance", message).help(help));
+            }
+            self.found.left = Some(left);
+        }
         let at = |line| Some(SourcePlace::new(name, line, "", 0..0));
         let mut found = self.found;
         for (line, message, help) in self.faults {
             found.findings.push(Diagnostic::error("clearance", message).at(at(line)).help(help));
         }
+        for (line, number) in self.undrawn {
+            let message = format!(
+                "what tool {number} cuts is not taken from the stock: of its cutter no more than a radius is known"
+            );
+            let help = "cutter = [[z, r], …] under [tools.N] of the machine file draws it";
+            let warning = Diagnostic::warning("clearance-body", message).at(at(line)).help(help);
+            found.findings.push(warning);
+        }
         for row in self.rows.values() {
             if let Some(fault) = &row.fault {
                 let message = told(&self.control.machine, row, fault);
-                let help = "another fixture, tool or path; what is only drawn too large is drawn again, a pair that may touch is left out by [clearance] ignore";
+                let by_cells = found.left.is_some() && row.names[0] == "stock";
+                let help = match by_cells && fault.verdict == Verdict::Unproven {
+                    true => {
+                        "another path or tool; a finer [stock] resolution tells what is near to a wall from it"
+                    }
+                    false => {
+                        "another fixture, tool or path; what is only drawn too large is drawn again, a pair that may touch is left out by [clearance] ignore"
+                    }
+                };
                 found
                     .findings
                     .push(Diagnostic::error("clearance", message).at(at(fault.line)).help(help));

@@ -24,6 +24,10 @@ const KEPT: Bounds = Bounds {
 
 /// Names of bodies by what they are; those of a tool stand ahead of its number too: `holder T3`.
 const KINDS: [&str; 3] = ["stock", "holder", "cutter"];
+const RESOLUTION: Bounds =
+    Bounds { table: "[stock] ", says: " mm", ..Bounds::above_zero("machine-body") };
+
+const EDGE: Bounds = Bounds { says: " mm", ..Bounds::above_zero("machine-body") };
 
 const RADIUS: Bounds = Bounds { says: " mm", ..Bounds::above_zero("machine-body") };
 
@@ -53,6 +57,15 @@ keys! {
         /// An STL file, mm, in the frame of `block`. A path is that from this file; an empty one takes the body away that an
         /// extended machine has.
         file: Option<Spanned<String>>,
+        /// The stock gets less by what is certainly cut of it; a fixture does not. If not said the stock is that before the
+        /// first cut, all the way.
+        cut: Option<Spanned<bool>>,
+        /// Edge of the cells by which it is known what is left of a stock that is cut, mm; follows from its size if not said.
+        /// Faces across X, Y and Z are exact, others are known to within this.
+        resolution: Option<KeyedNumber> = RESOLUTION,
+        /// The part that is to become of a stock that is cut, an STL file in the frame of `block`, mm: told is where it is cut
+        /// into and what is left on it. A path is that from this file.
+        part: Option<Spanned<String>>,
     }
 }
 
@@ -98,6 +111,9 @@ keys! {
         holder: Vec<[KeyedNumber; 2]>,
         /// What cuts, likewise, z in mm from the tip towards the gauge point.
         cutter: Vec<[KeyedNumber; 2]>,
+        /// How far its edges go up from the tip, mm; what of the cutter is above them is a shank, and may touch no stock. All
+        /// of the cutter cuts if not said.
+        edge: Option<KeyedNumber> = EDGE,
     }
 }
 
@@ -112,6 +128,17 @@ pub struct GivenBody {
     pub shape: GivenShape,
     /// Where the machine file has it.
     pub place: Option<SourcePlace>,
+    /// It gets less by what is cut of it.
+    pub cut: Option<StockCut>,
+}
+
+/// How it is known what is left of a stock.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StockCut {
+    /// Edge of a cell, mm; that which follows from its size where none is said.
+    pub resolution: Option<f64>,
+    /// The part that is to become of it, an STL file.
+    pub part: Option<PathBuf>,
 }
 
 impl GivenBody {
@@ -155,6 +182,8 @@ pub struct ToolOutline {
     pub holder: Vec<[f64; 2]>,
     /// Points [z, r] of what cuts, mm, z from the tip towards the gauge point.
     pub cutter: Vec<[f64; 2]>,
+    /// How far its edges go up from the tip, mm; all of the cutter if not said.
+    pub edge: Option<f64>,
 }
 
 /// Two bodies, or all bodies of two kinds, by the names that a machine file calls them.
@@ -221,6 +250,11 @@ impl Builder<'_> {
                 Some(on) => link_of(on.get_ref(), axes),
                 None => Some(0),
             };
+            let BodyFile { cut, resolution, part, .. } = body.get_ref();
+            if cut.is_some() || resolution.is_some() || part.is_some() {
+                let message = format!("fixture {} says how it is cut", name.get_ref());
+                self.fault("machine-body", body.span(), message, "only a stock gets less");
+            }
             let Some(link) = link else {
                 let span = on.map_or_else(|| name.span(), Spanned::span);
                 let message = format!("fixture {} hangs on nothing of the machine", name.get_ref());
@@ -240,7 +274,16 @@ impl Builder<'_> {
             let message = "the stock hangs on the part and on nothing else".to_owned();
             self.fault("machine-body", on.span(), message, "leave `on` out");
         }
-        self.body("stock", 0, file)
+        let BodyFile { cut, resolution, part, .. } = file.get_ref();
+        let resolution = self.checked(resolution);
+        let is_cut = cut.as_ref().is_some_and(|cut| *cut.get_ref());
+        if let (Some(part), false) = (part, is_cut) {
+            let message = "[stock] has a part, and is not cut".to_owned();
+            self.fault("machine-body", part.span(), message, "cut = true");
+        }
+        let part = part.as_ref().and_then(|part| self.stl_path("machine-body", part));
+        let cut = is_cut.then_some(StockCut { resolution, part });
+        self.body("stock", 0, file).map(|body| GivenBody { cut, ..body })
     }
 
     fn body(&mut self, name: &str, link: usize, file: &Spanned<BodyFile>) -> Option<GivenBody> {
@@ -271,7 +314,7 @@ impl Builder<'_> {
             }
         };
         let place = self.sources.place(file.span());
-        Some(GivenBody { name: name.to_owned(), link, shape, place })
+        Some(GivenBody { name: name.to_owned(), link, shape, place, cut: None })
     }
 
     /// What is to be kept.

@@ -235,11 +235,12 @@ impl Builder<'_> {
     pub(super) fn tool_outlines(&mut self, file: &ToolsFile) -> Vec<ToolOutline> {
         let mut outlines = Vec::new();
         for (number, outline) in &file.outlines {
-            let ToolOutlineFile { holder, cutter, .. } = outline.get_ref();
+            let ToolOutlineFile { holder, cutter, edge, .. } = outline.get_ref();
+            let edge = self.checked(edge);
             let holder = self.profile(&format!("the holder of tool {number}"), holder);
             let cutter = self.profile(&format!("the cutter of tool {number}"), cutter);
             match number.parse() {
-                Ok(number) => outlines.push(ToolOutline { number, holder, cutter }),
+                Ok(number) => outlines.push(ToolOutline { number, holder, cutter, edge }),
                 Err(_) => {
                     let message = format!("[tools] has {number}, which is no tool number");
                     let help = "[tools.1] describes tool 1";

@@ -1,11 +1,14 @@
 //! Stocks of every shape, and distances from them.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 use post_clearance::convex::Convex;
 use post_clearance::distance::of_convex;
-use post_removal::field::Field;
+use post_clearance::shape::Shape;
+use post_removal::field::{Cutter, Field};
+use post_removal::profile::ToolPose;
 use post_testkit::{Rng, randomised};
 
 type V = Vector3<f64>;
@@ -115,5 +118,71 @@ fn the_distance_from_a_block_is_that_of_a_box() {
             assert!(found.at_most >= whole.at_least - 1e-4, "{found:?} {whole:?}");
             assert!(found.at_least >= 0.97 * whole.at_least - 1e-4, "{found:?} {whole:?}");
         }
+    }
+}
+
+/// The surface is closed, each edge gone along as often in both senses, and encloses what is left to within its cells.
+#[test]
+fn the_surface_of_what_is_left_is_closed() {
+    let (rounds, mut rng) = randomised(24, 3313);
+    for _ in rounds {
+        let size = V::new(14.0, 12.0, 9.0);
+        let mut field = Field::block(size, rng.range(0.3, 0.7));
+        let truth = size.product();
+        for _ in 0..rng.pick(4) {
+            let axis = rng.direction();
+            let cutter = Cutter::new(&[[0.0, 2.0], [30.0, rng.range(1.0, 3.0)]]);
+            let tip = V::new(rng.range(0.0, 14.0), rng.range(0.0, 12.0), rng.range(0.0, 9.0));
+            let to = tip + rng.point(9.0);
+            field.remove_straight(&cutter, [tip, to].map(|tip| ToolPose { tip, axis }));
+        }
+        let mut edges: HashMap<[[u64; 3]; 2], i32> = HashMap::new();
+        let mut volume = 0.0;
+        field.surface(&mut |corners| {
+            let [a, b, c] = corners;
+            volume += a.dot(&b.cross(&c)) / 6.0;
+            let bits = |corner: V| [corner.x, corner.y, corner.z].map(f64::to_bits);
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                let (from, to) = (bits(from), bits(to));
+                let (edge, sense) = if from < to { ([from, to], 1) } else { ([to, from], -1) };
+                *edges.entry(edge).or_default() += sense;
+            }
+        });
+        assert!(edges.values().all(|count| *count == 0));
+        let left = field.volume().at_most;
+        assert!((volume - left).abs() < 0.12 * truth, "{volume} of {left}");
+    }
+}
+
+/// A block in a block: what is left on it is what is around it, and a hole that is drilled into it is a gouge.
+#[test]
+fn what_is_cut_into_and_what_is_left_lie_between_their_bounds() {
+    let size = V::new(20.0, 20.0, 12.0);
+    // A square of 12.7 mm, on the bottom, 8 mm high: a prism of four sides.
+    let triangles = prism(V::new(10.0, 10.0, 0.0), [9.0; 2], 8.0, 4);
+    let volume = 2.0 * 81.0 * 8.0;
+    let surface = Shape::mesh(&triangles).unwrap();
+    for resolution in [0.8, 0.4] {
+        let part = Field::mesh(size, &triangles, resolution);
+        let mut field = Field::block(size, resolution);
+        let found = field.compare(&part, &surface);
+        let rest = size.product() - volume;
+        assert!(found.gouge.at_least == 0.0 && found.deepest.at_least == 0.0, "{found:?}");
+        assert!(found.rest.at_least <= rest && rest <= found.rest.at_most, "{found:?} {rest}");
+        // The corner of the block is farthest from the part, by the turn of the square.
+        let out = found.thickest;
+        assert!(out.at_least > 5.0 && out.at_least < out.at_most, "{out:?}");
+        // A hole of 4 mm down to 3 mm above the bottom: 5 mm deep in the part, no more than 2 mm from the hole's side.
+        let cutter = Cutter::new(&[[0.0, 2.0], [30.0, 2.0]]);
+        let pose = ToolPose { tip: V::new(10.0, 10.0, 5.0), axis: V::z() };
+        field.remove(&cutter, &pose);
+        field.doubt(&cutter, &pose, 0.0);
+        let found = field.compare(&part, &surface);
+        let truth = PI * 4.0 * 3.0;
+        assert!(found.gouge.at_least <= truth && truth <= found.gouge.at_most, "{found:?}");
+        assert!(found.gouge.at_least > 0.3 * truth, "{found:?}");
+        let deep = found.deepest;
+        assert!(deep.at_least > 3.0 - 1.2 * resolution && deep.at_least <= 3.0, "{deep:?}");
+        assert!(deep.at_most >= 3.0 && deep.at_most < 3.0 + 3.0 * resolution, "{deep:?}");
     }
 }

@@ -1,0 +1,401 @@
+//! The stock while the program cuts it: cutter, shank and holder against what is left.
+
+use nalgebra::{Rotation3, Vector3};
+use post_clearance::piece::Way;
+use post_clearance::placement::Placement;
+use post_clearance::proof::{BodyKind, Fault, Proof, Verdict};
+use post_clearance::shape::Shape;
+use post_machine::description::{GivenShape, Machine};
+use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joint;
+use post_readback::{Motion, SpindleState};
+use post_removal::along::{self, Found, Mounted, Place, Watched};
+use post_removal::been::Been;
+use post_removal::compare::Compared;
+use post_removal::field::{Cutter, Field, Volume};
+use post_removal::mesh::Triangle;
+use post_removal::profile::{ToolPose, between};
+
+use super::bodies::{ToolShape, closed_mesh, unusable};
+use super::watch::PairRow;
+use crate::failure::Failure;
+use crate::files::{AtomicFile, PathArg, Role};
+use crate::session::Session;
+
+/// What cannot be told from a distance that is too short by less than this counts as one, mm.
+const WITHIN: f64 = 0.01;
+
+/// What is left of a stock behind a program.
+#[derive(Clone, Debug)]
+pub struct StockLeft {
+    /// Volume before the first cut.
+    pub before: Volume,
+    /// Volume that is left.
+    pub left: Volume,
+    /// Edges of a cell, mm.
+    pub cell: Vector3<f64>,
+    /// What it is against the part that is to become of it, places in the part frame.
+    pub part: Option<Compared>,
+    field: Field,
+    /// The low corner of the field, part frame, mm.
+    low: Vector3<f64>,
+}
+
+/// A mesh in the frame of a field with its low corner at `low`.
+fn shifted(mut triangles: Vec<Triangle>, low: Vector3<f64>) -> Vec<Triangle> {
+    for corner in triangles.iter_mut().flatten() {
+        *corner -= low;
+    }
+    triangles
+}
+
+/// An STL file of what is left.
+const SOLID: Role = Role { what: "stock", remedy: "name another file with --stock-stl" };
+
+impl StockLeft {
+    /// Writes the surface of what may be left as an STL file, binary, mm, part frame as the CL file has it. It is closed, and
+    /// as exact as a cell.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write_stl(&self, session: &Session, path: &PathArg) -> Result<(), Failure> {
+        let mut files = AtomicFile::create(session, &[(SOLID, path)])?;
+        let mut count = 0u32;
+        self.field.surface(&mut |_| count += 1);
+        let mut head = [0u8; 84];
+        head[80..].copy_from_slice(&count.to_le_bytes());
+        for file in &mut files {
+            let mut written = file.write_bytes(&head);
+            self.field.surface(&mut |corners| {
+                if written.is_ok() {
+                    written = file.write_bytes(&self.facet(corners));
+                }
+            });
+            written?;
+        }
+        AtomicFile::finish(session, files)?;
+        Ok(())
+    }
+
+    /// A triangle as binary STL has it: normal, corners, two bytes that say nothing.
+    fn facet(&self, corners: [Vector3<f64>; 3]) -> [u8; 50] {
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default();
+        let points = [normal, a + self.low, b + self.low, c + self.low];
+        let numbers = points.iter().flat_map(|point| point.iter().copied());
+        let mut facet = [0; 50];
+        for (place, number) in facet.chunks_exact_mut(4).zip(numbers) {
+            place.copy_from_slice(&(number as f32).to_le_bytes());
+        }
+        facet
+    }
+}
+
+/// The stock, and the tool that cuts it.
+pub(super) struct CutStock {
+    axes: Vec<Joint>,
+    field: Field,
+    /// The frame of the field on the link of the part, and its low corner in the part frame, mm.
+    frame: Placement,
+    low: Vector3<f64>,
+    /// The part that is to become of it, in the frame of the field, and its surface.
+    part: Option<(Field, Shape)>,
+    before: Volume,
+    been: Been,
+    tool: Option<CuttingTool>,
+    rows: Vec<PairRow>,
+    distances: u64,
+}
+
+/// The tool in the spindle.
+struct CuttingTool {
+    /// What it removes, and where that is; where no more than its radius is known, nothing for certain. None where not even
+    /// that is known.
+    cutter: Option<(Cutter, Mounted)>,
+    parts: Vec<Part>,
+}
+
+/// A part of a tool.
+struct Part {
+    kind: PartKind,
+    /// Place of its pair with the stock.
+    row: usize,
+    watched: Watched,
+    /// All of it, as what may remove where it touches.
+    body: Cutter,
+    mounted: Mounted,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PartKind {
+    Holder,
+    Cutter,
+    Shank,
+}
+
+/// How a motion goes against the stock.
+pub(super) struct Against<'a> {
+    pub motion: &'a Motion,
+    /// The ways that it may go.
+    pub ways: &'a [Way<'a>],
+    /// At rapid traverse.
+    pub rapid: bool,
+    /// What a holder keeps, mm.
+    pub keep: f64,
+}
+
+impl CutStock {
+    /// The stock of a machine whose file says that it is cut.
+    pub fn new(machine: &Machine, findings: &mut Vec<Diagnostic>) -> Option<Self> {
+        let given = machine.stock.as_ref()?;
+        let cut = given.cut.as_ref()?;
+        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), machine.turn).into_inner();
+        let triangles = match &given.shape {
+            GivenShape::File(file) => {
+                Some(closed_mesh(file, (&given.place, &given.name), findings)?)
+            }
+            _ => None,
+        };
+        let [low, high] = match &triangles {
+            Some(triangles) => {
+                let corners = triangles.iter().flatten();
+                let infinite = Vector3::repeat(f64::INFINITY);
+                corners.fold([infinite, -infinite], |[low, high], corner| {
+                    [low.inf(corner), high.sup(corner)]
+                })
+            }
+            None => given.extents()?.map(Vector3::from),
+        };
+        let size = high - low;
+        let resolution = cut.resolution.unwrap_or_else(|| Field::resolution(size));
+        let finest = Field::finest(size);
+        if resolution < finest {
+            let why = format!(
+                "[stock] resolution {resolution} mm is finer than there is room for: {finest:.3} mm for a stock of its size"
+            );
+            findings.push(unusable("stock", &why, &given.place));
+            return None;
+        }
+        let field = match (&given.shape, triangles) {
+            (GivenShape::Cylinder { ends, radius }, _) => {
+                Field::cylinder(size, ends.map(|end| end - low), *radius, resolution)
+            }
+            (_, Some(triangles)) => Field::mesh(size, &shifted(triangles, low), resolution),
+            _ => Field::block(size, resolution),
+        };
+        let part = cut.part.as_ref().and_then(|file| {
+            let triangles = closed_mesh(file, (&given.place, "the part"), findings)?;
+            let triangles = shifted(triangles, low);
+            let surface = Shape::mesh(&triangles)?;
+            Some((Field::mesh(size, &triangles, resolution), surface))
+        });
+        let frame = Placement { rotation: turn, shift: turn * low + machine.mount };
+        let axes = machine.axes.iter().map(|axis| axis.joint).collect();
+        let (before, been) = (field.volume(), Been::new(&[]));
+        let (rows, distances) = (Vec::new(), 0);
+        Some(Self { axes, field, frame, low, part, before, been, tool: None, rows, distances })
+    }
+
+    /// The pairs that are looked at here, and not by the proof of the whole stock.
+    pub fn looks(kinds: [BodyKind; 2]) -> bool {
+        kinds.contains(&BodyKind::Stock)
+            && (kinds.contains(&BodyKind::Holder) || kinds.contains(&BodyKind::Cutter))
+    }
+
+    /// Another tool is in the spindle; pairs that `proof` leaves out are left out here.
+    pub fn change_tool(&mut self, machine: &Machine, tool: Option<&ToolShape<'_>>, proof: &Proof) {
+        self.been.clear();
+        let cutting = tool.map(|tool| self.cutting(machine, tool, proof));
+        self.tool = cutting;
+    }
+
+    fn cutting(&mut self, machine: &Machine, tool: &ToolShape<'_>, proof: &Proof) -> CuttingTool {
+        let ToolShape { number, length, outline, .. } = *tool;
+        let counts = |kind: BodyKind| {
+            proof.results().any(|result| {
+                let kinds = result.bodies.map(|place| proof.bodies()[place].kind);
+                kinds.contains(&BodyKind::Stock) && kinds.contains(&kind)
+            })
+        };
+        let up = machine.tool_axis;
+        let at_tip = ToolPose { tip: machine.gauge - up * length, axis: up };
+        let at_gauge = ToolPose { tip: machine.gauge, axis: -up };
+        let profile = tool.cutter().unwrap_or_default();
+        let edge = outline.and_then(|outline| outline.edge).unwrap_or(f64::INFINITY);
+        let edges = between(&profile, [f64::NEG_INFINITY, edge]);
+        let holder = outline.map_or_else(Vec::new, |outline| outline.holder.clone());
+        let shank = between(&profile, [edge, f64::INFINITY]);
+        let bodies = [
+            (PartKind::Holder, "holder", BodyKind::Holder, at_gauge, holder),
+            (PartKind::Cutter, "cutter", BodyKind::Cutter, at_tip, edges.clone()),
+            (PartKind::Shank, "shank", BodyKind::Cutter, at_tip, shank),
+        ];
+        let mut parts = Vec::new();
+        for (kind, what, counted, at_zero, profile) in bodies {
+            let shape = Shape::turned(&profile, at_zero.tip, at_zero.axis);
+            let (true, Some(shape)) = (counts(counted), shape) else { continue };
+            let mounted = Mounted::new(&self.axes, self.frame, at_zero, shape.sphere());
+            let row = self.row(format!("{what} T{number}"));
+            let body = Cutter::vague(&profile);
+            let watched = Watched::new(mounted.clone(), profile);
+            parts.push(Part { kind, row, watched, body, mounted });
+        }
+        let cutter = Shape::turned(&edges, at_tip.tip, up).map(|shape| {
+            let mounted = Mounted::new(&self.axes, self.frame, at_tip, shape.sphere());
+            let cutter = if tool.is_drawn() { Cutter::new(&edges) } else { Cutter::vague(&edges) };
+            (cutter, mounted)
+        });
+        self.been = Been::new(&profile);
+        CuttingTool { cutter, parts }
+    }
+
+    fn row(&mut self, other: String) -> usize {
+        let names = ["stock".to_owned(), other];
+        if let Some(place) = self.rows.iter().position(|row| row.names == names) {
+            return place;
+        }
+        let (clear_by, nearest) = (f64::INFINITY, (f64::INFINITY, 0));
+        self.rows.push(PairRow { names, clear_by, nearest, faults: 0, fault: None });
+        self.rows.len() - 1
+    }
+
+    /// Nothing is known of what the machine does now.
+    pub fn forget(&mut self) {
+        self.field.doubt_all();
+        self.been.clear();
+    }
+
+    /// Takes a motion: what of the tool does not cut is held against what is left, and what cuts takes its part of it.
+    /// Whether the cutter was fed into the stock while the spindle stands.
+    pub fn motion(&mut self, against: &Against<'_>) -> bool {
+        let spindle = &against.motion.state.spindle;
+        if matches!(spindle, SpindleState::Surface { .. }) {
+            // A part that turns may be anywhere.
+            self.forget();
+            return false;
+        }
+        let Some(mut tool) = self.tool.take() else {
+            // So may a tool of which nothing is known: at rapid one hits nothing that is said to be clear.
+            if !against.rapid {
+                self.forget();
+            }
+            return false;
+        };
+        let spins =
+            matches!(spindle, SpindleState::Clockwise(_) | SpindleState::CounterClockwise(_));
+        let cuts = !against.rapid && spins;
+        let mut clear = true;
+        for way in against.ways {
+            clear &= self.way(&mut tool, against, way, cuts);
+        }
+        self.tool = Some(tool);
+        !clear && !against.rapid && !spins
+    }
+
+    /// Takes a way of a motion; whether all parts stay clear that do not cut.
+    fn way(
+        &mut self,
+        tool: &mut CuttingTool,
+        against: &Against<'_>,
+        way: &Way<'_>,
+        cuts: bool,
+    ) -> bool {
+        let mounted = tool.cutter.as_ref().map(|(_, mounted)| mounted);
+        let straight = mounted.and_then(|mounted| mounted.straight(way));
+        // What it goes along again, or above, it has been in before.
+        let been = straight.is_some_and(|poses| self.been.covers(&mut self.field, poses));
+        // Behind edges that go down or sideways a shank comes into what they have cut.
+        let sinks = straight.is_some_and(|[from, to]| (to.tip - from.tip).dot(&from.axis) <= 0.0);
+        let follows = |part: &Part| cuts && sinks && part.kind == PartKind::Shank;
+        let spared = |part: &Part| match part.kind {
+            PartKind::Holder => false,
+            PartKind::Cutter => cuts || been,
+            PartKind::Shank => been,
+        };
+        let (behind, ahead): (Vec<_>, Vec<_>) =
+            tool.parts.iter_mut().filter(|part| !spared(part)).partition(|part| follows(part));
+        let mut clear = true;
+        for part in ahead {
+            clear &= self.holds(part, against, way);
+        }
+        match &tool.cutter {
+            Some((cutter, mounted)) if cuts => {
+                along::cut(&mut self.field, mounted, cutter, way);
+            }
+            None if cuts => self.field.doubt_all(),
+            _ => {}
+        }
+        for part in behind {
+            clear &= self.holds(part, against, way);
+        }
+        // However much of it is known, the tool was there, and what was in its way is gone.
+        if let Some((_, mounted)) = &tool.cutter
+            && (cuts || clear)
+        {
+            match straight {
+                Some(poses) => self.been.add(poses),
+                None => {
+                    let ends = way.ends.map(|stance| mounted.pose(&stance.joints));
+                    ends.into_iter().for_each(|pose| self.been.add([pose; 2]));
+                }
+            }
+        }
+        clear
+    }
+
+    /// Holds a part of the tool against what is left on a way; whether it stays clear.
+    fn holds(&mut self, part: &mut Part, against: &Against<'_>, way: &Way<'_>) -> bool {
+        let keep = if part.kind == PartKind::Holder { against.keep } else { 0.0 };
+        let (nearest, distances) = (part.watched.nearest(), part.watched.distances());
+        let found = part.watched.along(&mut self.field, way, keep, WITHIN);
+        self.distances += part.watched.distances() - distances;
+        let row = &mut self.rows[part.row];
+        if part.watched.nearest() < nearest {
+            let line = against.motion.line;
+            if part.watched.nearest() < row.nearest.0 {
+                row.nearest = (part.watched.nearest(), line);
+            }
+        }
+        let (verdict, place) = match found {
+            Found::Clear(by) => {
+                row.clear_by = row.clear_by.min(by);
+                return true;
+            }
+            Found::Hits(place) => (Verdict::Hits, place),
+            Found::Unproven(place) => (Verdict::Unproven, place),
+        };
+        let Place { joints, at_most, point } = place;
+        row.faults += 1;
+        let worse = row
+            .fault
+            .as_ref()
+            .is_none_or(|fault| verdict == Verdict::Hits && fault.verdict != Verdict::Hits);
+        if worse {
+            let point = self.frame.point(point);
+            let line = against.motion.line;
+            row.fault = Some(Fault { verdict, line, joints, at_most, keep, point });
+        }
+        // What it hits may give way.
+        along::cut(&mut self.field, &part.mounted, &part.body, way);
+        false
+    }
+
+    /// What came of it: rows of the pairs, distances that were computed, what is left.
+    pub fn finish(self) -> (Vec<PairRow>, u64, StockLeft) {
+        let part = self.part.map(|(part, surface)| {
+            let mut compared = self.field.compare(&part, &surface);
+            compared.deepest.point += self.low;
+            compared.thickest.point += self.low;
+            compared
+        });
+        let left = StockLeft {
+            part,
+            before: self.before,
+            left: self.field.volume(),
+            cell: self.field.cell(),
+            field: self.field,
+            low: self.low,
+        };
+        (self.rows, self.distances, left)
+    }
+}

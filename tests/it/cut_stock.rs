@@ -1,0 +1,162 @@
+//! `post clearance` with a stock that is cut: a pocket that was cut may be dived into, what is left of the stock is hit.
+
+use std::fs;
+
+use post_testkit::assert_contains;
+use tempfile::TempDir;
+
+use crate::common::post_in;
+
+/// A mill with a block and two tools: an end mill with a neck, and a drill.
+fn machine(stock: &str, first: &str) -> String {
+    format!(
+        "extends = \"vmc\"\nname = \"mine\"\n[stock]\nblock = [[-40, -30, -30], [40, 30, 0]]\n{stock}\n\
+         [tools.1]\nlength = 100\n{first}\n\
+         [tools.2]\nlength = 100\ncutter = [[0, 0], [1.5, 2.5], [60, 2.5]]\n"
+    )
+}
+
+/// Edges 22 mm long, a neck above them, a holder 40 mm above the tip.
+const END_MILL: &str =
+    "holder = [[0, 25], [60, 25]]\ncutter = [[0, 5], [22, 5], [22, 4.5], [40, 4.5]]\nedge = 22";
+
+/// A pocket in steps of 6 mm down to 24 mm, then `more`.
+fn program(more: &str) -> String {
+    let mut text = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT1 M6\nS3000 M3\nG54\nG0 X0. Y0.\nG43 H1 Z5.\n".to_owned();
+    for step in 1..=4 {
+        text.push_str(&format!("G0 X-20. Y-13.\nG1 Z-{}. F300.\n", 6 * step));
+        for row in 0..5 {
+            let (y, x) = (-13.0 + 6.5 * f64::from(row), if row % 2 == 0 { 20 } else { -20 });
+            text.push_str(&format!("G1 Y{y:.3}\nX{x}. F800.\n"));
+        }
+        text.push_str("G0 Z5.\n");
+    }
+    format!("{text}{more}\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n")
+}
+
+/// What is said, and whether the program is clear.
+fn proven(machine: &str, program: &str, more: &[&str]) -> (TempDir, String, bool) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mine.toml"), machine).unwrap();
+    fs::write(folder.path().join("part.nc"), program).unwrap();
+    let words = ["clearance", "part.nc", "-m", "mine.toml", "--mount", "0,0,-300"];
+    let run = post_in(folder.path(), &[&words[..], more].concat());
+    assert!(run.code < 2, "{}", run.err);
+    (folder, format!("{}{}", run.out, run.err), run.code == 0)
+}
+
+/// Down into the pocket at rapid, and a hole by pecks, whose rapids go back down to where it was.
+const DIVES: &str = "G0 X0. Y0.\nG0 Z-23.\nG1 X5. F800.\nG0 X0.\nG0 Z5.\nG53 G0 Z20.\nT2 M6\nS3000 M3\nG54\nG0 X30. Y22.\n\
+                     G43 H2 Z5.\nG98 G83 Z-20. R2. Q5. F200.\nG80";
+
+#[test]
+fn a_pocket_that_was_cut_may_be_dived_into() {
+    let program = program(DIVES);
+    let (_, said, clear) = proven(&machine("cut = true", END_MILL), &program, &[]);
+    assert!(clear, "{said}");
+    assert_contains(&said, &["stock  holder T1", "stock  shank T1", "stock left, mm³"]);
+    // Without it the rapid down hits.
+    let (_, said, clear) = proven(&machine("", END_MILL), &program, &[]);
+    assert!(!clear);
+    assert_contains(&said, &["stock hits cutter T1"]);
+}
+
+#[test]
+fn what_is_left_is_hit_at_rapid_by_holders_and_by_shanks() {
+    let mine = machine("cut = true", END_MILL);
+    // Beside the pocket there is material: the wall is met on the way, certainly.
+    let through = program("G0 X0. Y0.\nG0 Z-20.\nG0 X34.");
+    let (_, said, clear) = proven(&mine, &through, &[]);
+    assert!(!clear);
+    let line = through.lines().position(|line| line == "G0 X34.").unwrap() + 1;
+    assert_contains(&said, &["stock hits cutter T1", &format!("part.nc:{line}\n")]);
+    // A rapid onto the floor is no clear one: it touches.
+    let (_, said, clear) = proven(&mine, &program("G0 X0. Y2.\nG0 Z-24."), &[]);
+    assert!(!clear);
+    assert_contains(&said, &["that stock stays clear of cutter T1 is not proven"]);
+    // A holder that comes down to 10 mm above the tip meets the rim of the pocket.
+    let low = END_MILL.replace("[60, 25]", "[88, 25]");
+    let (_, said, clear) = proven(&machine("cut = true", &low), &program(""), &[]);
+    assert!(!clear);
+    assert_contains(&said, &["stock hits holder T1"]);
+    // Edges that are shorter than the step: the shank cuts.
+    let short = "cutter = [[0, 5], [40, 5]]\nedge = 3";
+    let (_, said, clear) = proven(&machine("cut = true", short), &program(""), &[]);
+    assert!(!clear);
+    assert_contains(&said, &["stock hits shank T1"]);
+    // A cut with the spindle standing is none.
+    let stands = program("").replace("S3000 M3\n", "");
+    let (_, said, clear) = proven(&mine, &stands, &[]);
+    assert!(!clear);
+    assert_contains(&said, &["while the spindle stands", "stock hits cutter T1"]);
+}
+
+/// What a tool of no more than a radius cuts is not known, and is said.
+#[test]
+fn a_tool_that_is_not_drawn_removes_nothing() {
+    let mine = machine("cut = true", "").replace("[tools.1]\nlength = 100\n", "[tools]\n1 = 100\n");
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mine.toml"), mine).unwrap();
+    fs::write(folder.path().join("part.nc"), program("G0 X0. Y2.\nG0 Z-23.")).unwrap();
+    fs::write(folder.path().join("part.cls"), "CUTTER/10.\nLOADTL/1\nGOTO/0,0,0\n").unwrap();
+    let words =
+        ["clearance", "part.nc", "-m", "mine.toml", "--mount", "0,0,-300", "--cl", "part.cls"];
+    let run = post_in(folder.path(), &words);
+    assert_eq!(run.code, 1, "{}{}", run.out, run.err);
+    assert_contains(
+        &run.err,
+        &["what tool 1 cuts is not taken from the stock", "that stock stays clear of cutter T1"],
+    );
+}
+
+#[test]
+fn what_is_left_is_written_as_stl() {
+    let (folder, said, clear) =
+        proven(&machine("cut = true", END_MILL), &program(""), &["--stock-stl", "left.stl"]);
+    assert!(clear, "{said}");
+    let stl = fs::read(folder.path().join("left.stl")).unwrap();
+    let count = u32::from_le_bytes(stl[80..84].try_into().unwrap()) as usize;
+    assert_eq!(stl.len(), 84 + 50 * count);
+    let number = |at: usize| f64::from(f32::from_le_bytes(stl[at..at + 4].try_into().unwrap()));
+    // Six times the volume: the sum of the triple products of all corners.
+    let six: f64 = (0..count)
+        .map(|triangle| {
+            let corner = |place: usize| {
+                let at = 84 + 50 * triangle + 12 * (place + 1);
+                [number(at), number(at + 4), number(at + 8)]
+            };
+            let [a, b, c] = [corner(0), corner(1), corner(2)];
+            a[0] * (b[1] * c[2] - b[2] * c[1])
+                + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0])
+        })
+        .sum();
+    // The block less a pocket of 50 by 36 with corners of 5 mm.
+    let pocket = 24.0 * (50.0 * 36.0 - (4.0 - std::f64::consts::PI) * 25.0);
+    let truth = 80.0 * 60.0 * 30.0 - pocket;
+    assert!((six / 6.0 - truth).abs() < 0.02 * truth, "{} of {truth}", six / 6.0);
+    // Without a stock that is cut there is none.
+    let (_, said, clear) =
+        proven(&machine("", END_MILL), &program(""), &["--stock-stl", "left.stl"]);
+    assert!(!clear);
+    assert_contains(&said, &["no STL file is written"]);
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    for (text, says) in [
+        ("cut = true\nresolution = 0", "resolution"),
+        ("cut = true\nresolution = 0.001", "finer than there is room for"),
+        (
+            "cut = true\n[fixture.vise]\ncut = true\nblock = [[90, 0, 0], [95, 5, 5]]",
+            "only a stock gets less",
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("mine.toml"), machine(text, END_MILL)).unwrap();
+        fs::write(folder.path().join("part.nc"), program("")).unwrap();
+        let run = post_in(folder.path(), &["clearance", "part.nc", "-m", "mine.toml"]);
+        assert_ne!(run.code, 0);
+        assert_contains(&run.err, &[says]);
+    }
+}

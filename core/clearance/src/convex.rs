@@ -1,10 +1,25 @@
 //! One convex piece of a body.
 
-use nalgebra::Vector3;
-use parry3d_f64::math::Vector;
-use parry3d_f64::shape::SupportMap;
+use std::sync::Arc;
 
+use nalgebra::Vector3;
+
+use crate::cloud::Cloud;
 use crate::placement::Placement;
+
+/// What a search for the nearest points asks of a set, whose hull is meant.
+pub(crate) trait Support {
+    /// The point farthest along `along`, which need not be a unit vector.
+    fn support(&self, along: Vector3<f64>) -> Vector3<f64>;
+
+    /// A point in it.
+    fn centre(&self) -> Vector3<f64>;
+
+    /// All that is so near belongs to it too, mm.
+    fn round(&self) -> f64 {
+        0.0
+    }
+}
 
 /// A convex piece, mm: its core, and all that is within `round` of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +51,17 @@ pub enum Core {
     },
     /// A triangle.
     Triangle([Vector3<f64>; 3]),
+    /// The hull of many points.
+    Hull(Box<Hull>),
+}
+
+/// The hull of points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hull {
+    /// The points.
+    pub(crate) cloud: Arc<Cloud>,
+    /// Where they are.
+    pub(crate) at: Placement,
 }
 
 impl Core {
@@ -62,6 +88,7 @@ impl Core {
                     (false, false) => *c,
                 }
             }
+            Self::Hull(hull) => hull.at.point(hull.cloud.farthest(hull.at.rotation.tr_mul(&along))),
         }
     }
 
@@ -71,6 +98,7 @@ impl Core {
             Self::Frustum { ends: [first, last], .. } => (first + last) * 0.5,
             Self::Block { centre, .. } => *centre,
             Self::Triangle([a, b, c]) => (a + b + c) / 3.0,
+            Self::Hull(hull) => hull.at.point(hull.cloud.mean()),
         }
     }
 
@@ -88,6 +116,10 @@ impl Core {
                 faces.into_iter().flatten().flatten().collect()
             }
             Self::Triangle(corners) => corners.map(|corner| (corner, 0.0)).to_vec(),
+            Self::Hull(hull) => {
+                let (centre, radius) = hull.cloud.sphere();
+                vec![(hull.at.point(centre), radius)]
+            }
         }
     }
 
@@ -102,6 +134,11 @@ impl Core {
                 Self::Block { centre: at.point(*centre), half: half.map(|half| at.direction(half)) }
             }
             Self::Triangle(corners) => Self::Triangle(corners.map(|corner| at.point(corner))),
+            Self::Hull(hull) => {
+                let shift = at.point(hull.at.shift);
+                let at = Placement { rotation: at.rotation * hull.at.rotation, shift };
+                Self::Hull(Box::new(Hull { cloud: hull.cloud.clone(), at }))
+            }
         }
     }
 }
@@ -135,6 +172,11 @@ impl Convex {
         Self { core: self.core.placed(at), round: self.round }
     }
 
+    /// The hull of points.
+    pub(crate) fn hull(cloud: Arc<Cloud>) -> Self {
+        Self { core: Core::Hull(Box::new(Hull { cloud, at: Placement::identity() })), round: 0.0 }
+    }
+
     /// A sphere that holds it: centre and radius, mm.
     pub fn sphere(&self) -> (Vector3<f64>, f64) {
         let centre = self.core.centre();
@@ -142,7 +184,7 @@ impl Convex {
         let far = corners.iter().map(|(corner, radius)| match self.core {
             // The rim is square to the axis, the centre on it.
             Core::Frustum { .. } => libm::hypot((corner - centre).norm(), *radius),
-            _ => (corner - centre).norm(),
+            _ => (corner - centre).norm() + radius,
         });
         (centre, far.fold(0.0, f64::max) + self.round)
     }
@@ -162,9 +204,16 @@ impl Convex {
     }
 }
 
-impl SupportMap for Core {
-    fn local_support_point(&self, along: Vector) -> Vector {
-        let [x, y, z] = self.support(Vector3::new(along.x, along.y, along.z)).into();
-        Vector::new(x, y, z)
+impl Support for Convex {
+    fn support(&self, along: Vector3<f64>) -> Vector3<f64> {
+        self.core.support(along)
+    }
+
+    fn centre(&self) -> Vector3<f64> {
+        self.core.centre()
+    }
+
+    fn round(&self) -> f64 {
+        self.round
     }
 }

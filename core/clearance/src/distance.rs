@@ -7,17 +7,21 @@
 use nalgebra::Vector3;
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_points};
+use parry3d_f64::shape::SupportMap;
 
 use crate::ALLOWANCE;
-use crate::convex::Convex;
+use crate::convex::{Convex, Support};
 use crate::placement::Placement;
 use crate::shape::{Below, Shape};
 
-/// Pieces that are no nearer than this share of the nearest found are not looked at.
+/// Pieces that are no nearer than this share of the nearest found are not looked at, if that is as much as is wanted.
 const CLOSE: f64 = 0.98;
 
 /// Steps to a point of two pieces that overlap, for who looks at it.
 const STEPS: usize = 40;
+
+/// Pairs of pieces that one search looks at: of the others counts what their spheres and boxes tell.
+const MOST_LOOKS: usize = 1 << 14;
 
 /// What is known of how far two shapes are apart, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +30,7 @@ pub struct Apart {
     pub at_least: f64,
     /// They are no farther: the distance of two points of them; zero where they overlap.
     pub at_most: f64,
-    /// Where that is, in the frame of the first.
+    /// Where that is, in the frame of the first; nothing where they overlap.
     pub point: Vector3<f64>,
     /// The pieces that are nearest.
     pub nearest: [usize; 2],
@@ -41,17 +45,70 @@ impl Apart {
     }
 }
 
+/// A set that the search sees in the frame of another.
+struct Seen<'a, S>(&'a S, Option<&'a Placement>);
+
+impl<S: Support> Seen<'_, S> {
+    fn centre(&self) -> Vector3<f64> {
+        let centre = self.0.centre();
+        self.1.map_or(centre, |at| at.point(centre))
+    }
+
+    fn farthest(&self, along: Vector3<f64>) -> Vector3<f64> {
+        match self.1 {
+            Some(at) => at.point(self.0.support(at.rotation.tr_mul(&along))),
+            None => self.0.support(along),
+        }
+    }
+}
+
+impl<S: Support> SupportMap for Seen<'_, S> {
+    fn local_support_point(&self, along: Vector) -> Vector {
+        let [x, y, z] = self.farthest(Vector3::new(along.x, along.y, along.z)).into();
+        Vector::new(x, y, z)
+    }
+}
+
 /// Two convex pieces, in one frame.
 pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
+    of_hulls(one, other, &Placement::identity(), None)
+}
+
+/// A point that is nearly in both of the pieces that `apart` says are nearest, if they overlap, in the frame of the first
+/// shape.
+pub(crate) fn common_point(
+    one: &Shape,
+    other: &Shape,
+    at: &Placement,
+    apart: &Apart,
+) -> Vector3<f64> {
+    let pieces = (one.pieces.get(apart.nearest[0]), other.pieces.get(apart.nearest[1]));
+    match pieces {
+        (Some(one), Some(other)) if apart.along == Vector3::zeros() => {
+            common(&Seen(one, None), &Seen(other, Some(at)))
+        }
+        _ => apart.point,
+    }
+}
+
+/// The hulls of two sets, the second placed in the frame of the first. The search begins at `start`, the direction from one
+/// to the other that is likely.
+pub(crate) fn of_hulls<S: Support, T: Support>(
+    one: &S,
+    other: &T,
+    at: &Placement,
+    start: Option<Vector3<f64>>,
+) -> Apart {
     let pose = Pose::IDENTITY;
-    let (from, to) = (one.core.centre(), other.core.centre());
-    let start = (to - from).try_normalize(1e-12).unwrap_or_else(Vector3::x);
+    let round = one.round() + other.round();
+    let (one, other) = (Seen(one, None), Seen(other, Some(at)));
+    let (from, to) = (one.centre(), other.centre());
+    let start = start.or_else(|| (to - from).try_normalize(1e-12)).unwrap_or_else(Vector3::x);
     let mut simplex = VoronoiSimplex::new();
     let start = Vector::new(start.x, start.y, start.z);
-    simplex.reset(CsoPoint::from_shapes(&pose, &one.core, &other.core, start));
-    let found = closest_points(&pose, &one.core, &other.core, f64::MAX, true, &mut simplex);
+    simplex.reset(CsoPoint::from_shapes(&pose, &one, &other, start));
+    let found = closest_points(&pose, &one, &other, f64::MAX, true, &mut simplex);
     let of = |vector: Vector| Vector3::new(vector.x, vector.y, vector.z);
-    let round = one.round + other.round;
     let mut apart = Apart::touching((from + to) * 0.5, [0; 2]);
     let along = match found {
         GJKResult::ClosestPoints(first, last, along) => {
@@ -60,10 +117,7 @@ pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
             apart.at_most = ((last - first).norm() - round).max(0.0);
             [last - first, of(along)]
         }
-        GJKResult::Intersection => {
-            apart.point = common(one, other);
-            return apart;
-        }
+        GJKResult::Intersection => return apart,
         // The search has not come to an end: what a direction proves still holds.
         GJKResult::NoIntersection(along) | GJKResult::Proximity(along) => {
             apart.at_most = ((to - from).norm() - round).max(0.0);
@@ -72,8 +126,8 @@ pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
     };
     for along in along {
         let Some(along) = along.try_normalize(1e-300) else { continue };
-        let near = along.dot(&other.core.support(-along));
-        let far = along.dot(&one.core.support(along));
+        let near = along.dot(&other.farthest(-along));
+        let far = along.dot(&one.farthest(along));
         if near - far - round > apart.at_least {
             (apart.at_least, apart.along) = (near - far - round, along);
         }
@@ -85,11 +139,11 @@ pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
 
 /// A point that is nearly in both of two pieces that overlap: from the middle of each towards the other, by the points of
 /// both that are farthest on the way (Frank, Wolfe 1956).
-fn common(one: &Convex, other: &Convex) -> Vector3<f64> {
-    let (mut here, mut there) = (one.core.centre(), other.core.centre());
+fn common(one: &Seen<'_, Convex>, other: &Seen<'_, Convex>) -> Vector3<f64> {
+    let (mut here, mut there) = (one.centre(), other.centre());
     for _ in 0..STEPS {
         let off = there - here;
-        let ends = [one.core.support(off), other.core.support(-off)];
+        let ends = [one.farthest(off), other.farthest(-off)];
         let change = (ends[1] - there) - (ends[0] - here);
         let length = change.norm_squared();
         if length <= 0.0 {
@@ -102,11 +156,18 @@ fn common(one: &Convex, other: &Convex) -> Vector3<f64> {
     (here + there) * 0.5
 }
 
-/// Two shapes, the second placed in the frame of the first; `guess` are pieces that may be the nearest. What a mesh encloses
-/// is not looked at.
-pub fn of_shapes(one: &Shape, other: &Shape, at: &Placement, guess: [usize; 2]) -> Apart {
+/// Two shapes, the second placed in the frame of the first; `guess` are pieces that may be the nearest. If they are apart by
+/// `wanted`, mm, their distance is known less closely. What a mesh encloses is not looked at.
+pub fn of_shapes(
+    one: &Shape,
+    other: &Shape,
+    at: &Placement,
+    guess: [usize; 2],
+    wanted: f64,
+) -> Apart {
     let passed = f64::INFINITY;
-    let mut search = Search { one, other, at, best: None, passed, planes: None };
+    let mut search =
+        Search { one, other, at, guess, wanted, best: None, looks: 0, passed, planes: None };
     search.pieces(guess);
     search.nodes(0, 0);
     let mut apart = search.best.unwrap_or(Apart::touching(Vector3::zeros(), guess));
@@ -117,16 +178,19 @@ pub fn of_shapes(one: &Shape, other: &Shape, at: &Placement, guess: [usize; 2]) 
 /// One of the shapes encloses a part of the other.
 pub(crate) fn encloses(one: &Shape, other: &Shape, at: &Placement) -> Option<Vector3<f64>> {
     let held = |shape: &Shape, point| shape.shells.iter().any(|shell| shell.holds(point));
-    let inner = other.points().into_iter().map(|point| at.point(point));
-    let inner = inner.into_iter().find(|point| held(one, *point));
-    inner.or_else(|| one.points().into_iter().find(|point| held(other, at.back(*point))))
+    let mut inner = other.points.iter().map(|point| at.point(*point));
+    let inner = inner.find(|point| held(one, *point));
+    inner.or_else(|| one.points.iter().copied().find(|point| held(other, at.back(*point))))
 }
 
 struct Search<'a> {
     one: &'a Shape,
     other: &'a Shape,
     at: &'a Placement,
+    guess: [usize; 2],
+    wanted: f64,
     best: Option<Apart>,
+    looks: usize,
     /// The least that is proven of what was not looked at, mm.
     passed: f64,
     /// Across the planes between the nearest pieces so far: others are likely to be apart along it too.
@@ -154,7 +218,8 @@ impl Search<'_> {
         else {
             return;
         };
-        let found = of_convex(one, &other.placed(self.at));
+        self.looks += 1;
+        let found = of_hulls(one, other, self.at, self.planes.map(|planes| planes.along));
         let found = Apart { nearest: [first, last], ..found };
         if found.at_most < self.at_most() && found.along != Vector3::zeros() {
             let along = found.along;
@@ -171,6 +236,18 @@ impl Search<'_> {
         });
     }
 
+    /// Of what is no nearer than `bound` nothing is looked at.
+    fn passes(&mut self, bound: f64) -> bool {
+        let nearest = self.at_most();
+        let far = bound >= CLOSE * nearest && (bound >= self.wanted || bound >= nearest);
+        // Nothing is nearer than touching.
+        let passes = far || nearest <= 0.0 || self.looks >= MOST_LOOKS;
+        if passes {
+            self.passed = self.passed.min(bound);
+        }
+        passes
+    }
+
     /// No part of one node is nearer than this to one of the other, mm.
     fn apart(&self, one: usize, other: usize) -> f64 {
         let (one, other) = (&self.one.nodes[one], &self.other.nodes[other]);
@@ -185,9 +262,7 @@ impl Search<'_> {
 
     fn nodes(&mut self, one: usize, other: usize) {
         let bound = self.apart(one, other);
-        // Nothing is nearer than touching.
-        if bound >= CLOSE * self.at_most() || self.at_most() <= 0.0 {
-            self.passed = self.passed.min(bound);
+        if self.passes(bound) {
             return;
         }
         let (first, last) = (&self.one.nodes[one], &self.other.nodes[other]);
@@ -217,6 +292,9 @@ impl Search<'_> {
 
     /// Two pieces, unless their spheres are far enough apart.
     fn pieces_within(&mut self, [first, last]: [usize; 2]) {
+        if self.guess == [first, last] {
+            return;
+        }
         let (centre, radius) = self.one.spheres[first];
         let (beside, reach) = self.other.spheres[last];
         let mut bound = (self.at.point(beside) - centre).norm() - radius - reach;
@@ -226,11 +304,8 @@ impl Search<'_> {
             let near = shift + beside.dot(&other.core.support(-beside)) - other.round;
             bound = bound.max(near - far);
         }
-        bound -= ALLOWANCE;
-        if bound >= CLOSE * self.at_most() || self.at_most() <= 0.0 {
-            self.passed = self.passed.min(bound);
-            return;
+        if !self.passes(bound - ALLOWANCE) {
+            self.pieces([first, last]);
         }
-        self.pieces([first, last]);
     }
 }

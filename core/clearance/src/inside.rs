@@ -1,6 +1,4 @@
-//! What a mesh encloses.
-
-use std::collections::HashMap;
+//! What a part of a mesh encloses.
 
 use nalgebra::Vector3;
 
@@ -8,6 +6,8 @@ use nalgebra::Vector3;
 #[derive(Clone, Debug)]
 pub(crate) struct Shell {
     triangles: Vec<[Vector3<f64>; 3]>,
+    /// Least and largest coordinates, mm.
+    extents: [Vector3<f64>; 2],
 }
 
 /// Of a full turn of the solid angle so much is inside. A closed shell has all of it inside and nothing outside; of an open
@@ -15,55 +15,33 @@ pub(crate) struct Shell {
 const INSIDE: f64 = 0.25;
 
 impl Shell {
-    /// The parts of a mesh that hang together by common corners.
-    pub(crate) fn all(triangles: &[[Vector3<f64>; 3]]) -> Vec<Self> {
-        let mut root: Vec<usize> = (0..triangles.len()).collect();
-        let mut first: HashMap<[u64; 3], usize> = HashMap::new();
-        for (place, corners) in triangles.iter().enumerate() {
-            for corner in corners {
-                let key = [corner.x, corner.y, corner.z].map(|value| (value + 0.0).to_bits());
-                let known = *first.entry(key).or_insert(place);
-                let (one, other) = (find(&mut root, known), find(&mut root, place));
-                root[one.max(other)] = one.min(other);
-            }
+    /// None of fewer triangles than enclose anything.
+    pub(crate) fn new(triangles: Vec<[Vector3<f64>; 3]>) -> Option<Self> {
+        if triangles.len() < 4 {
+            return None;
         }
-        let mut shells: Vec<Self> = Vec::new();
-        let mut place_of: HashMap<usize, usize> = HashMap::new();
-        for (place, corners) in triangles.iter().enumerate() {
-            let of = find(&mut root, place);
-            let shell = *place_of.entry(of).or_insert_with(|| {
-                shells.push(Self { triangles: Vec::new() });
-                shells.len() - 1
-            });
-            shells[shell].triangles.push(*corners);
-        }
-        shells
-    }
-
-    /// A point of it.
-    pub(crate) fn corner(&self) -> Vector3<f64> {
-        self.triangles.first().map_or_else(Vector3::zeros, |corners| corners[0])
+        let infinite = Vector3::repeat(f64::INFINITY);
+        let corners = triangles.as_flattened().iter();
+        let extents = corners
+            .fold([infinite, -infinite], |[low, high], corner| [low.inf(corner), high.sup(corner)]);
+        Some(Self { triangles, extents })
     }
 
     /// Whether it encloses `point`: each shell by itself, so that a hollow, or a shell whose faces look inward, is no way
     /// out of what encloses both.
     pub(crate) fn holds(&self, point: Vector3<f64>) -> bool {
+        let [low, high] = self.extents;
+        if point.inf(&low) != low || point.sup(&high) != high {
+            return false;
+        }
         let full = 4.0 * std::f64::consts::PI;
         let seen: f64 = self.triangles.iter().map(|corners| solid_angle(corners, point)).sum();
         libm::fabs(seen / full) > INSIDE
     }
 }
 
-fn find(root: &mut [usize], mut place: usize) -> usize {
-    while root[place] != place {
-        root[place] = root[root[place]];
-        place = root[place];
-    }
-    place
-}
-
 /// The solid angle under which a triangle is seen (van Oosterom, Strackee 1983), with the sign of its sense.
-fn solid_angle(corners: &[Vector3<f64>; 3], from: Vector3<f64>) -> f64 {
+pub(crate) fn solid_angle(corners: &[Vector3<f64>; 3], from: Vector3<f64>) -> f64 {
     let [a, b, c] = corners.map(|corner| corner - from);
     let [x, y, z] = [a, b, c].map(|arm| arm.norm());
     let volume = a.dot(&b.cross(&c));

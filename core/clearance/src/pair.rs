@@ -74,13 +74,14 @@ impl View {
         at
     }
 
-    /// No point of the body is farther from where it is at `known` on any of `piece`, mm; `centre` is its middle there.
+    /// No point of the body is farther from where it is at `known` on any of `piece`, mm.
     ///
     /// Where the axes go linearly, the middle strays from the line between its ends by no more than an eighth of the bound
     /// on its second derivative, and no point of that line is farther away than an end of it. A point of the body goes
     /// besides as far as the turn of its frame takes it about the middle; turns of several axes add up at most. Of axes that
     /// go for themselves it says nothing.
-    pub fn reach(&self, known: &Joints, centre: Vector3<f64>, piece: &Piece) -> f64 {
+    pub fn reach(&self, known: &Joints, piece: &Piece) -> f64 {
+        let centre = self.centre(known);
         let ends = piece.ends.each_ref().map(|joints| self.of(joints));
         let known = self.of(known);
         let far = |place: usize| {
@@ -92,6 +93,40 @@ impl View {
         let [from, to] = ends.each_ref().map(|ends| (self.chain.forward(ends).tip - centre).norm());
         let bend = self.chain.bend_by_arms([&ends[0], &ends[1]]);
         from.max(to) + bend / 8.0 + piece.stray + chord(turned) * self.radius
+    }
+
+    /// Some rotary axis between the two turns on `piece`.
+    pub(crate) fn turns(&self, piece: &Piece) -> bool {
+        let [from, to] = &piece.ends;
+        let mut axes = self.chain.joints().iter().zip(&self.axes);
+        axes.any(|(joint, axis)| joint.rotary && from[*axis] != to[*axis])
+    }
+
+    /// A bound on the second derivative of any point of the body where the axes go linearly over `piece`, mm, by the share
+    /// of it.
+    pub(crate) fn bend(&self, piece: &Piece) -> f64 {
+        let [from, to] = piece.ends.each_ref().map(|joints| self.of(joints));
+        self.chain.bend_by_arms_within(self.radius, [&from, &to])
+    }
+
+    /// How far each linear axis takes the body on `piece`, mm, frame of the other's link, rotary axes as they stand where it
+    /// begins.
+    pub(crate) fn slides(&self, piece: &Piece) -> impl Iterator<Item = Vector3<f64>> {
+        let [from, to] = &piece.ends;
+        let start = self.centre(from);
+        let moved = self.axes.iter().filter(|axis| from[**axis] != to[**axis]);
+        moved.map(move |axis| {
+            let mut joints = *from;
+            joints[*axis] = to[*axis];
+            self.centre(&joints) - start
+        })
+    }
+
+    /// Sum of the distances from the lines of rotary axes that [`View::levers`] tells with all axes at zero, mm.
+    pub(crate) fn arms(&self) -> f64 {
+        let levers = self.levers(&Joints::default());
+        let joints = self.chain.joints().iter().zip(levers);
+        joints.filter(|(joint, _)| joint.rotary).map(|(_, lever)| lever).sum()
     }
 
     /// How far any point of the body is from the line of each axis where the axes stand on `known`, mm, at most.
@@ -122,7 +157,7 @@ impl View {
 
     /// The axis of the machine whose way over `piece` moves the body most.
     pub fn widest(&self, piece: &Piece) -> Option<(usize, f64)> {
-        let levers = self.levers(&piece.middle);
+        let levers = self.levers(&piece.ends[0]);
         let way = |place: usize| {
             let axis = self.axes[place];
             let way = libm::fabs(piece.ends[1][axis] - piece.ends[0][axis]);

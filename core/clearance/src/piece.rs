@@ -25,8 +25,6 @@ pub struct Way<'a> {
 pub struct Piece {
     /// Axis values at its ends, mm and radians.
     pub ends: [Joints; 2],
-    /// Axis values at a place of it.
-    pub middle: Joints,
     /// How far all axes together stray at most from the straight line between the ends, mm: they are linear ones.
     pub stray: f64,
     /// The axes go for themselves between the ends, anywhere in the box that these span.
@@ -38,36 +36,24 @@ pub struct Piece {
 impl Piece {
     /// A machine that stands.
     pub fn at(joints: &Joints) -> Self {
-        Self {
-            ends: [*joints; 2],
-            middle: *joints,
-            stray: 0.0,
-            independent: false,
-            share: [0.0, 1.0],
-        }
+        Self { ends: [*joints; 2], stray: 0.0, independent: false, share: [0.0, 1.0] }
     }
 
-    /// The halves of a piece of `way`; of a box those across the axis `widest`. None where nothing is proven of one.
-    pub fn halves(&self, way: &Way<'_>, widest: usize) -> Option<[Self; 2]> {
+    /// The halves of a piece of `way` on both sides of its `middle`; of a box those across the axis `widest`. None where
+    /// nothing is proven of one.
+    pub fn halves(&self, way: &Way<'_>, middle: &Joints, widest: usize) -> Option<[Self; 2]> {
         let [from, to] = self.ends;
         if self.independent {
-            let half = |ends: [Joints; 2]| {
-                let middle = middle(&ends);
-                Self { ends, middle, ..self.clone() }
-            };
             let (mut first, mut last) = (to, from);
-            first[widest] = self.middle[widest];
-            last[widest] = self.middle[widest];
-            return Some([half([from, first]), half([last, to])]);
+            first[widest] = middle[widest];
+            last[widest] = middle[widest];
+            return Some([[from, first], [last, to]].map(|ends| Self { ends, ..self.clone() }));
         }
         let [start, end] = self.share;
         let cut = 0.5 * (start + end);
-        Some([way.piece([start, cut], &from)?, way.piece([cut, end], &self.middle)?])
+        let half = |share, ends| way.piece(Self { ends, share, ..self.clone() });
+        Some([half([start, cut], [from, *middle])?, half([cut, end], [*middle, to])?])
     }
-}
-
-fn middle([from, to]: &[Joints; 2]) -> Joints {
-    std::array::from_fn(|place| 0.5 * (from[place] + to[place]))
 }
 
 impl Way<'_> {
@@ -77,25 +63,23 @@ impl Way<'_> {
         let moving = (0..MAX_AXES).filter(|place| ends[0][*place] != ends[1][*place]).count();
         // One axis alone comes by all that is between its ends, whenever.
         if self.independent && moving > 1 {
-            let middle = middle(&ends);
-            return Some(Piece { ends, middle, independent: true, ..Piece::at(&middle) });
+            return Some(Piece { ends, independent: true, ..Piece::at(&ends[0]) });
         }
-        self.piece([0.0, 1.0], &ends[0])
+        self.piece(Piece { ends, ..Piece::at(&ends[0]) })
     }
 
-    /// The part of it between two shares, whose axes are near `near` where it begins.
-    fn piece(&self, share: [f64; 2], near: &Joints) -> Option<Piece> {
-        let at = |t: f64, near: &Joints| {
-            let stance = self.ends.iter().zip([0.0, 1.0]).find(|(_, end)| *end == t);
-            match stance {
-                Some((stance, _)) => Some(stance.joints),
-                None => self.interpolation.joints_at(self.solver, self.ends, t, near).ok(),
-            }
-        };
-        let from = at(share[0], near)?;
-        let middle = at(0.5 * (share[0] + share[1]), &from)?;
-        let to = at(share[1], &middle)?;
-        let mut piece = Piece { ends: [from, to], middle, stray: 0.0, independent: false, share };
+    /// Axis values in the middle of a piece of it, mm and radians. None where the axes do not come by.
+    pub fn middle(&self, piece: &Piece) -> Option<Joints> {
+        let [from, to] = &piece.ends;
+        if piece.independent || *self.interpolation == Interpolation::Axes {
+            return Some(std::array::from_fn(|place| 0.5 * (from[place] + to[place])));
+        }
+        let share = 0.5 * (piece.share[0] + piece.share[1]);
+        self.interpolation.joints_at(self.solver, self.ends, share, from).ok()
+    }
+
+    /// A piece of it of which its ends are known, with how far its axes stray. None where nothing is proven of that.
+    fn piece(&self, mut piece: Piece) -> Option<Piece> {
         if *self.interpolation == Interpolation::Axes {
             return Some(piece);
         }
@@ -103,13 +87,17 @@ impl Way<'_> {
         if turning && *self.interpolation == Interpolation::TipAndAxis {
             return None;
         }
+        let share = piece.share;
         let curved = self.curved(share)?;
         let reach = self.solver.linear_reach();
         // What is no number is told from zero: it proves nothing.
         let mut stray = if curved == 0.0 { 0.0 } else { reach * curved };
         if turning {
             let tip = self.interpolation.curve().at(self.ends.map(|end| end.pose.tip), share[1]);
-            stray += TcpBlock::bend_by_arms(self.solver, [&from, &to], tip) / 8.0;
+            stray += {
+                let [from, to] = &piece.ends;
+                TcpBlock::bend_by_arms(self.solver, [from, to], tip)
+            } / 8.0;
         }
         let sliding = self.solver.chain().joints().iter().filter(|joint| !joint.rotary).count();
         piece.stray = stray * sliding as f64;

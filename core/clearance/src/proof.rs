@@ -2,7 +2,7 @@
 //!
 //! A distance that was found at one pose holds, less what one body can come nearer to the other, for every pose that
 //! follows: it is a budget that motions use up, and it is computed again where it is spent. Where that is not enough the
-//! way is halved.
+//! way is halved. Planes that held two bodies apart are tried before that: they show it at once while one goes by the other.
 
 mod closest;
 
@@ -13,6 +13,8 @@ use crate::ALLOWANCE;
 use crate::distance::{self, Apart};
 use crate::pair::View;
 use crate::piece::{Piece, Way};
+use crate::placement::Placement;
+use crate::planes::Planes;
 use crate::shape::Shape;
 
 /// Pieces of one motion that a pair is looked at on; what is not proven then is not.
@@ -122,10 +124,13 @@ pub struct PairResult {
 
 #[derive(Clone, Debug)]
 struct Pair {
+    /// Each sees the other body from the first or the second.
     views: [View; 2],
-    /// Which view is that of the smaller body.
-    smaller: usize,
+    /// Which of them sees the body go less far by turns.
+    nearer: usize,
     known: Option<Known>,
+    /// In the frame of the body that `nearer` looks from.
+    planes: Option<Planes>,
     guess: [usize; 2],
     /// Other rules than those of all pairs.
     rules: Option<Rules>,
@@ -136,9 +141,7 @@ struct Pair {
 #[derive(Clone, Debug)]
 struct Known {
     joints: Joints,
-    /// The middle of each body as the other sees it there.
-    centres: [Vector3<f64>; 2],
-    /// How far any point of the smaller body is from the axes there, mm.
+    /// How far any point of the body that [`Pair::nearer`] sees is from the axes there, mm.
     levers: Joints,
     at_least: f64,
 }
@@ -208,7 +211,7 @@ impl Proof {
     pub fn at(&mut self, joints: &Joints) -> Vec<([usize; 2], Apart)> {
         let Self { bodies, pairs, distances, .. } = self;
         let found = pairs.iter_mut().map(|pair| {
-            let apart = pair.distance(bodies, joints, true);
+            let apart = pair.distance(bodies, joints, true, Enough::OF_PIECES);
             (pair.result.bodies, apart)
         });
         let found: Vec<_> = found.collect();
@@ -254,6 +257,30 @@ impl Proof {
     }
 }
 
+/// How closely a distance is to be known, mm.
+#[derive(Clone, Copy)]
+struct Enough {
+    /// If what the bodies are wrapped in is apart by so much, that will do.
+    wrapped: f64,
+    /// Pieces that are apart by so much need not be looked at closely.
+    closely: f64,
+}
+
+impl Enough {
+    /// The pieces themselves are looked at.
+    const OF_PIECES: Self = Self { wrapped: f64::INFINITY, closely: 0.0 };
+}
+
+/// What came of looking at a piece.
+enum Looked {
+    /// They are apart by so much on all of it, mm.
+    Clear(f64),
+    /// Each of its halves is to be looked at.
+    Halved,
+    /// They are not proven to be clear.
+    Refused,
+}
+
 /// A motion that a pair is held against.
 struct Trial<'a> {
     bodies: &'a [Body],
@@ -275,54 +302,64 @@ impl Pair {
             fault: None,
             faults: 0,
         };
-        let smaller = usize::from(one.shape.sphere().1 < other.shape.sphere().1);
-        Self {
-            views: [view(one, other), view(other, one)],
-            smaller,
-            known: None,
-            guess: [0; 2],
-            rules: None,
-            result,
-        }
+        let views = [view(one, other), view(other, one)];
+        let nearer = usize::from(views[1].arms() < views[0].arms());
+        Self { views, nearer, known: None, planes: None, guess: [0; 2], rules: None, result }
     }
 
-    /// How far they are apart; `fresh`: what meshes enclose is looked at too.
-    fn distance(&mut self, bodies: &[Body], joints: &Joints, fresh: bool) -> Apart {
-        let [one, other] = self.result.bodies.map(|place| &bodies[place].shape);
+    /// How far they are apart: no closer than that it is as much as [`Enough`] says. `fresh`: what meshes enclose is looked
+    /// at too.
+    fn distance(&mut self, bodies: &[Body], joints: &Joints, fresh: bool, enough: Enough) -> Apart {
+        let shapes = self.result.bodies.map(|place| &bodies[place].shape);
+        let [one, other] = shapes;
         let at = self.views[0].placement(joints);
         if !at.shift.iter().chain(&at.rotation).all(|value| value.is_finite()) {
             let unknown = Apart::touching(Vector3::zeros(), self.guess);
             return Apart { at_most: f64::INFINITY, ..unknown };
         }
-        let mut apart = distance::of_shapes(one, other, &at, self.guess);
+        let convex = one.pieces() == 1 && other.pieces() == 1;
+        let hulls = match convex {
+            true => distance::of_shapes(one, other, &at, self.guess, enough.closely),
+            false => distance::of_hulls(one, other, &at, None),
+        };
+        let along = match self.nearer {
+            0 => hulls.along,
+            _ => -at.rotation.tr_mul(&hulls.along),
+        };
+        let apart = hulls.at_least > 0.0;
+        self.planes = apart.then(|| Planes::new(along, shapes[self.nearer]));
+        if convex {
+            return self.placed(hulls, shapes, &at);
+        }
+        // What they are wrapped in is apart by as much.
+        if hulls.at_least >= enough.wrapped {
+            return Apart { at_most: f64::INFINITY, nearest: self.guess, ..hulls };
+        }
+        let mut apart = distance::of_shapes(one, other, &at, self.guess, enough.closely);
         self.guess = apart.nearest;
-        if fresh && let Some(point) = distance::encloses(one, other, &at) {
-            (apart.at_least, apart.at_most, apart.point) = (0.0, 0.0, point);
+        apart.at_least = apart.at_least.max(hulls.at_least.min(apart.at_most));
+        if fresh
+            && hulls.at_least <= 0.0
+            && apart.at_most > 0.0
+            && let Some(point) = distance::encloses(one, other, &at)
+        {
+            return Apart { at_least: 0.0, at_most: 0.0, point, ..apart };
+        }
+        self.placed(apart, shapes, &at)
+    }
+
+    /// With the place where they overlap, unless that was told of them before.
+    fn placed(&self, mut apart: Apart, [one, other]: [&Shape; 2], at: &Placement) -> Apart {
+        let told = self.result.fault.as_ref().is_some_and(|fault| fault.verdict == Verdict::Hits);
+        if apart.at_most <= 0.0 && !told {
+            apart.point = distance::common_point(one, other, at, &apart);
         }
         apart
     }
 
     /// What is known where the axes stand on `joints`.
     fn knows(&self, joints: &Joints, at_least: f64) -> Known {
-        let centres = [0, 1].map(|view: usize| self.views[view].centre(joints));
-        let levers = self.views[self.smaller].levers(joints);
-        Known { joints: *joints, centres, levers, at_least }
-    }
-
-    /// They come nearer to one another by no more than this on a piece, mm, from where they stand at `known`: the least of
-    /// several bounds, of which the dearer ones are looked at only if the others are more than `enough`.
-    fn reach(&self, known: &Known, piece: &Piece, enough: f64) -> f64 {
-        let mut least =
-            self.views[self.smaller].reach_by_levers(&known.joints, &known.levers, piece);
-        // A turn takes the points of the smaller body less far.
-        for view in [self.smaller, 1 - self.smaller] {
-            if least <= enough || piece.independent {
-                break;
-            }
-            let reach = self.views[view].reach(&known.joints, known.centres[view], piece);
-            least = least.min(reach);
-        }
-        least
+        Known { joints: *joints, levers: self.views[self.nearer].levers(joints), at_least }
     }
 
     /// Proves a motion; how many distances were computed.
@@ -332,64 +369,124 @@ impl Pair {
             self.refuse(trial, Verdict::Unproven, &joints, None);
             return 0;
         };
+        if let Some(left) = self.left(trial, whole) {
+            self.result.clear_by = self.result.clear_by.min(left);
+            return 0;
+        }
         let mut computed = 0;
-        let mut waiting = vec![whole.clone()];
         let mut clear_by = f64::INFINITY;
+        let mut waiting = vec![whole.clone()];
         while let Some(piece) = waiting.pop() {
             if let Some(left) = self.left(trial, &piece) {
                 clear_by = clear_by.min(left);
                 continue;
             }
             computed += 1;
-            let fresh = self.known.is_none();
-            let joints = piece.middle;
-            let apart = self.distance(trial.bodies, &joints, fresh);
-            if apart.at_most < self.result.nearest.0 {
-                self.result.nearest = (apart.at_most, trial.motion.line);
-            }
-            if apart.at_most < trial.keep {
-                let verdict = match apart.at_most <= 0.0 {
-                    // Whether the axes come by there hangs on how fast each of them is.
-                    _ if piece.independent => Verdict::Unproven,
-                    true => Verdict::Hits,
-                    false => Verdict::Near,
-                };
-                self.refuse(trial, verdict, &joints, Some(&apart));
-                return computed;
-            }
-            let known = self.knows(&joints, apart.at_least);
-            let reach = self.reach(&known, &piece, 0.0);
-            self.known = Some(known);
-            if let Some(left) = self.left(trial, &piece) {
-                clear_by = clear_by.min(left);
-                continue;
-            }
-            let widest = self.views[0].widest(&piece).map_or(0, |(axis, _)| axis);
-            let halves = match reach <= trial.within || computed > MOST_PIECES {
-                true => None,
-                false => piece.halves(&trial.motion.way, widest),
-            };
-            if let Some([first, last]) = halves {
-                waiting.extend([last, first]);
-            } else if apart.at_least - reach >= trial.keep {
-                // What is to be kept is; the nearest approach is not known as closely as elsewhere.
-                clear_by = clear_by.min(apart.at_least - reach);
-            } else {
-                self.refuse(trial, Verdict::Unproven, &joints, Some(&apart));
-                return computed;
+            match self.look(trial, &piece, computed > MOST_PIECES, &mut waiting) {
+                Looked::Clear(left) => clear_by = clear_by.min(left),
+                Looked::Halved => {}
+                Looked::Refused => return computed,
             }
         }
         self.result.clear_by = self.result.clear_by.min(clear_by);
         computed
     }
 
-    /// What is left of the distance that is known, mm, if that is enough: what is to be kept, and no less than the nearest
-    /// approach by much.
-    fn left(&self, trial: &Trial<'_>, piece: &Piece) -> Option<f64> {
+    /// Finds how far they are apart in the middle of a piece, whose halves go to those that are `waiting`; it is not halved if it
+    /// is the `last` that is looked at.
+    fn look(
+        &mut self,
+        trial: &Trial<'_>,
+        piece: &Piece,
+        last: bool,
+        waiting: &mut Vec<Piece>,
+    ) -> Looked {
+        let Some(joints) = trial.motion.way.middle(piece) else {
+            self.refuse(trial, Verdict::Unproven, &piece.ends[0], None);
+            return Looked::Refused;
+        };
+        let mut known = self.knows(&joints, 0.0);
+        let reach = self.reach(&known, piece, 0.0);
+        let closely = trial.keep + trial.within;
+        let enough = Enough { wrapped: self.least(trial) + reach, closely };
+        let apart = self.distance(trial.bodies, &joints, self.known.is_none(), enough);
+        if apart.at_most < self.result.nearest.0 {
+            self.result.nearest = (apart.at_most, trial.motion.line);
+        }
+        if apart.at_most < trial.keep {
+            let verdict = match apart.at_most <= 0.0 {
+                // Whether the axes come by there hangs on how fast each of them is.
+                _ if piece.independent => Verdict::Unproven,
+                true => Verdict::Hits,
+                false => Verdict::Near,
+            };
+            self.refuse(trial, verdict, &joints, Some(&apart));
+            return Looked::Refused;
+        }
+        known.at_least = apart.at_least;
+        self.known = Some(known);
+        if let Some(left) = self.left(trial, piece) {
+            return Looked::Clear(left);
+        }
+        if reach > trial.within && !last {
+            let widest = self.views[0].widest(piece).map_or(0, |(axis, _)| axis);
+            if let Some([first, last]) = piece.halves(&trial.motion.way, &joints, widest) {
+                waiting.extend([last, first]);
+                return Looked::Halved;
+            }
+        }
+        // What is to be kept may be, though the nearest approach is not known as closely as elsewhere.
+        if apart.at_least - reach >= trial.keep {
+            return Looked::Clear(apart.at_least - reach);
+        }
+        let apart = match apart.at_most.is_finite() {
+            true => apart,
+            false => self.distance(trial.bodies, &joints, false, Enough::OF_PIECES),
+        };
+        self.refuse(trial, Verdict::Unproven, &joints, Some(&apart));
+        Looked::Refused
+    }
+
+    /// What a piece is to leave of the distance, mm: what is to be kept, and no less than the nearest approach by much.
+    fn least(&self, trial: &Trial<'_>) -> f64 {
+        trial.keep.max(CLOSE * self.result.nearest.0 - trial.within)
+    }
+
+    /// They are apart by so much on a piece, mm, if that is enough: by the distance that is known less what one can come nearer
+    /// to the other, or by the planes between them. The cheapest first.
+    fn left(&mut self, trial: &Trial<'_>, piece: &Piece) -> Option<f64> {
+        let least = self.least(trial);
+        let view = &self.views[self.nearer];
+        if let Some(known) = &self.known {
+            let left = known.at_least - view.reach_by_levers(&known.joints, &known.levers, piece);
+            if left >= least {
+                return Some(left);
+            }
+        }
+        let moves = &trial.bodies[self.result.bodies[1 - self.nearer]].shape;
+        let planes = self.planes.as_mut();
+        if let Some([left, end]) = planes.and_then(|planes| planes.gaps(view, moves, piece, least))
+        {
+            self.known = Some(self.knows(&piece.ends[1], end));
+            return Some(left);
+        }
         let known = self.known.as_ref()?;
-        let least = trial.keep.max(CLOSE * self.result.nearest.0 - trial.within);
         let left = known.at_least - self.reach(known, piece, known.at_least - least);
         (left >= least).then_some(left)
+    }
+
+    /// They come nearer to one another by no more than this on a piece, mm, from where they stand at `known`: the least of
+    /// several bounds, of which the dearer ones are looked at only if the others are more than `enough`.
+    fn reach(&self, known: &Known, piece: &Piece, enough: f64) -> f64 {
+        let mut least =
+            self.views[self.nearer].reach_by_levers(&known.joints, &known.levers, piece);
+        for view in [self.nearer, 1 - self.nearer] {
+            if least <= enough || piece.independent {
+                break;
+            }
+            least = least.min(self.views[view].reach(&known.joints, piece));
+        }
+        least
     }
 
     fn refuse(

@@ -1,11 +1,15 @@
 //! The shape of a body: convex pieces, and a tree of spheres around them.
 
-use std::collections::HashMap;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::convex::Convex;
+use crate::cloud::Cloud;
+use crate::convex::{Convex, Support};
 use crate::inside::Shell;
+use crate::mesh;
+
+pub use crate::mesh::MeshFaults;
 
 /// Pieces that a leaf of the tree holds at most.
 const LEAF: usize = 4;
@@ -17,7 +21,12 @@ pub struct Shape {
     /// A sphere around each piece: centre and radius, mm.
     pub(crate) spheres: Vec<(Vector3<f64>, f64)>,
     pub(crate) nodes: Vec<Node>,
+    /// Parts of a mesh that are not convex.
     pub(crate) shells: Vec<Shell>,
+    /// A point of each part that hangs together; of convex pieces one each.
+    pub(crate) points: Vec<Vector3<f64>>,
+    /// All corners of a mesh.
+    cloud: Option<Arc<Cloud>>,
     faults: MeshFaults,
 }
 
@@ -32,27 +41,41 @@ pub(crate) struct Node {
     pub below: Below,
 }
 
+/// What is around one piece.
+struct Around {
+    /// Least and largest coordinates, mm.
+    extents: [Vector3<f64>; 2],
+    /// Centre and radius, mm.
+    sphere: (Vector3<f64>, f64),
+}
+
+impl Around {
+    fn new(piece: &Convex) -> Self {
+        Self { extents: piece.extents(), sphere: piece.sphere() }
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Below {
     Pieces(usize, usize),
     Nodes([usize; 2]),
 }
 
-/// What is wrong with a mesh, and how often.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct MeshFaults {
-    /// Triangles without an area, left out: their edges are those of others.
-    pub flat: usize,
-    /// Edges with one triangle, or more than two: the mesh is no closed surface.
-    pub open: usize,
-    /// Edges whose two triangles do not agree what is outside.
-    pub inverted: usize,
-}
-
 impl Shape {
     /// The union of convex pieces. None where there is no piece, or one is too far away or no number.
     pub fn new(pieces: Vec<Convex>) -> Option<Self> {
-        Self::with(pieces, Vec::new(), MeshFaults::default())
+        if pieces.is_empty() || !pieces.iter().all(Convex::is_near) {
+            return None;
+        }
+        let points = pieces.iter().map(|piece| piece.core.centre()).collect();
+        let around: Vec<_> = pieces.iter().map(Around::new).collect();
+        let mut order: Vec<usize> = (0..pieces.len()).collect();
+        let mut nodes = Vec::new();
+        grow(&around, &mut order, 0, &mut nodes);
+        let spheres = order.iter().map(|place| around[*place].sphere).collect();
+        let pieces = order.iter().map(|place| pieces[*place].clone()).collect();
+        let (shells, faults) = (Vec::new(), MeshFaults::default());
+        Some(Self { pieces, spheres, nodes, shells, points, cloud: None, faults })
     }
 
     /// The profile of revolution through `profile`, points [z, r] in mm along `axis` (a unit vector) from `origin`. Between
@@ -63,23 +86,29 @@ impl Shape {
 
     /// A mesh, corners in mm; what it encloses belongs to it. None where nothing is left of it.
     pub fn mesh(triangles: &[[Vector3<f64>; 3]]) -> Option<Self> {
-        let all = triangles.len();
-        let kept: Vec<[Vector3<f64>; 3]> =
-            triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a).copied().collect();
-        let mut faults = edges(&kept);
-        faults.flat = all - kept.len();
-        let shells = Shell::all(&kept);
-        Self::with(kept.into_iter().map(Convex::triangle).collect(), shells, faults)
-    }
-
-    fn with(mut pieces: Vec<Convex>, shells: Vec<Shell>, faults: MeshFaults) -> Option<Self> {
-        if pieces.is_empty() || !pieces.iter().all(Convex::is_near) {
+        let near = |at: &Vector3<f64>| at.iter().all(|value| libm::fabs(*value) < crate::FARTHEST);
+        if !triangles.as_flattened().iter().all(near) {
             return None;
         }
-        let mut nodes = Vec::new();
-        grow(&mut pieces, 0, &mut nodes);
-        let spheres = pieces.iter().map(Convex::sphere).collect();
-        Some(Self { pieces, spheres, nodes, shells, faults })
+        let kept: Vec<[Vector3<f64>; 3]> =
+            triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a).copied().collect();
+        let (parts, faults) = mesh::parts(&kept);
+        let faults = MeshFaults { flat: triangles.len() - kept.len(), ..faults };
+        let points = parts.iter().map(|part| part.corners[0]).collect();
+        let corners = parts.iter().flat_map(|part| &part.corners).copied().collect();
+        let mut pieces = Vec::new();
+        let mut shells = Vec::new();
+        for part in parts {
+            match part.hull {
+                Some(hull) => pieces.push(Convex::hull(Arc::new(hull))),
+                None => {
+                    pieces.extend(part.triangles.iter().copied().map(Convex::triangle));
+                    shells.extend(Shell::new(part.triangles));
+                }
+            }
+        }
+        let cloud = Cloud::new(corners).map(Arc::new);
+        Some(Self { shells, points, cloud, faults, ..Self::new(pieces)? })
     }
 
     /// A sphere that holds all of it: centre and radius, mm.
@@ -97,12 +126,30 @@ impl Shape {
         self.pieces.len()
     }
 
-    /// A point of each part of it that hangs together; of convex pieces one each.
-    pub(crate) fn points(&self) -> Vec<Vector3<f64>> {
-        if self.shells.is_empty() {
-            return self.pieces.iter().map(|piece| piece.core.centre()).collect();
+    /// Parts that hang together; convex pieces are one each.
+    pub fn parts(&self) -> usize {
+        self.points.len()
+    }
+}
+
+/// The hull of all of it.
+impl Support for Shape {
+    fn support(&self, along: Vector3<f64>) -> Vector3<f64> {
+        if let Some(cloud) = &self.cloud {
+            return cloud.farthest(along);
         }
-        self.shells.iter().map(Shell::corner).collect()
+        let unit = along.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let points = self.pieces.iter().map(|piece| piece.core.support(along) + unit * piece.round);
+        let first = (f64::NEG_INFINITY, Vector3::zeros());
+        let farther = |best: (f64, Vector3<f64>), point: Vector3<f64>| {
+            let far = along.dot(&point);
+            if far > best.0 { (far, point) } else { best }
+        };
+        points.fold(first, farther).1
+    }
+
+    fn centre(&self) -> Vector3<f64> {
+        self.pieces[0].core.centre()
     }
 }
 
@@ -121,54 +168,32 @@ pub fn turned_pieces(
         .collect()
 }
 
-/// Makes the tree of `pieces`, which it puts in order; `first` is the place of the first of them among all.
-fn grow(pieces: &mut [Convex], first: usize, nodes: &mut Vec<Node>) -> usize {
-    let spheres: Vec<_> = pieces.iter().map(Convex::sphere).collect();
+/// Makes the tree of the pieces that `order` names, which it puts in order, by what is `around` them; `first` is the place
+/// of the first of them among all.
+fn grow(around: &[Around], order: &mut [usize], first: usize, nodes: &mut Vec<Node>) -> usize {
     let infinite = Vector3::repeat(f64::INFINITY);
-    let (low, high) = pieces.iter().fold((infinite, -infinite), |(low, high), piece| {
-        let [least, most] = piece.extents();
+    let (low, high) = order.iter().fold((infinite, -infinite), |(low, high), place| {
+        let [least, most] = around[*place].extents;
         (low.inf(&least), high.sup(&most))
     });
     let centre = (low + high) * 0.5;
-    let radius = spheres.iter().map(|(at, radius)| (at - centre).norm() + radius);
+    let radius = order.iter().map(|place| {
+        let (at, radius) = around[*place].sphere;
+        (at - centre).norm() + radius
+    });
     let radius = radius.fold(0.0, f64::max) + crate::ALLOWANCE;
     let place = nodes.len();
     let half = (high - low) * 0.5;
-    nodes.push(Node { centre, radius, half, below: Below::Pieces(first, pieces.len()) });
-    if pieces.len() > LEAF {
-        let axis = (high - low).imax();
-        let middle = pieces.len() / 2;
-        pieces.select_nth_unstable_by(middle, |one, other| {
-            one.core.centre()[axis].total_cmp(&other.core.centre()[axis])
-        });
-        let (left, right) = pieces.split_at_mut(middle);
-        let left = grow(left, first, nodes);
-        let right = grow(right, first + middle, nodes);
+    nodes.push(Node { centre, radius, half, below: Below::Pieces(first, order.len()) });
+    if order.len() > LEAF {
+        let axis = half.imax();
+        let middle = order.len() / 2;
+        let along = |place: &usize| around[*place].sphere.0[axis];
+        order.select_nth_unstable_by(middle, |one, other| along(one).total_cmp(&along(other)));
+        let (left, right) = order.split_at_mut(middle);
+        let left = grow(around, left, first, nodes);
+        let right = grow(around, right, first + middle, nodes);
         nodes[place].below = Below::Nodes([left, right]);
     }
     place
-}
-
-/// Counts edges that are not shared by two triangles that agree.
-fn edges(triangles: &[[Vector3<f64>; 3]]) -> MeshFaults {
-    let bits =
-        |corner: &Vector3<f64>| [corner.x, corner.y, corner.z].map(|value| (value + 0.0).to_bits());
-    // How often an edge is gone along in each of its senses.
-    let mut seen: HashMap<[[u64; 3]; 2], [usize; 2]> = HashMap::new();
-    for [a, b, c] in triangles {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            let (from, to) = (bits(from), bits(to));
-            let (edge, sense) = if from <= to { ([from, to], 0) } else { ([to, from], 1) };
-            seen.entry(edge).or_default()[sense] += 1;
-        }
-    }
-    let mut faults = MeshFaults::default();
-    for [along, against] in seen.into_values().collect::<Vec<_>>() {
-        match (along, against) {
-            (1, 1) => {}
-            (2, 0) | (0, 2) => faults.inverted += 1,
-            _ => faults.open += 1,
-        }
-    }
-    faults
 }

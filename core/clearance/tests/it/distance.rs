@@ -119,10 +119,10 @@ fn the_tree_passes_over_nothing() {
             (found.at_least.min(least), found.at_most.min(most))
         });
         let shapes = [one.clone(), other.clone()].map(|pieces| Shape::new(pieces).unwrap());
-        let found = of_shapes(&shapes[0], &shapes[1], &at, [0; 2]);
+        let found = of_shapes(&shapes[0], &shapes[1], &at, [0; 2], 0.0);
         assert!(found.at_least <= most, "{found:?} {most}");
-        // The search comes as near as its own precision, which hangs on the frame.
-        assert!(found.at_most >= most - 1e-6, "{found:?} {most}");
+        // The search comes as near as its own precision, which hangs on the frame and on where it begins.
+        assert!(found.at_most >= most - 1e-6 - 1e-7 * most, "{found:?} {most}");
         assert!(found.at_least >= 0.97 * least - 1e-5, "{found:?} {least}");
     }
 }

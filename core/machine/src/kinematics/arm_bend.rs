@@ -45,7 +45,13 @@ impl Chain {
     /// mm: from the line between its ends the tip strays by an eighth of it at most.
     #[inline]
     pub fn bend_by_arms(&self, ends: [&Joints; 2]) -> f64 {
-        let mut tip = ArmBend::at(self.tip(), 0.0, 0.0);
+        self.bend_by_arms_within(0.0, ends)
+    }
+
+    /// [`Chain::bend_by_arms`] of all that moves with the tip within `radius` of it, mm.
+    #[inline]
+    pub fn bend_by_arms_within(&self, radius: f64, ends: [&Joints; 2]) -> f64 {
+        let mut tip = ArmBend::at(self.tip(), radius, 0.0);
         for (index, joint) in self.joints().iter().enumerate().rev() {
             let step = (ends[1][index] - ends[0][index]).abs();
             match joint.rotary {

@@ -69,27 +69,52 @@ fn what_is_clear_is_proven_and_what_grows_into_another_is_not() {
     assert_contains(&said, &["stock hits holder T3"]);
 }
 
-/// What a tool has cut another has not been in: drawn out of the cut behind a change it is in the way.
-#[test]
-fn a_tool_that_is_changed_in_the_cut_was_not_there_before() {
-    let folder = folder("");
-    let machine = "extends = \"vmc\"\nname = \"mine\"\n[stock]\nblock = [[-20, -20, -30], [20, 20, 0]]\n\
-                   [tools.1]\nlength = 100\ncutter = [[0, 5], [60, 5]]\n\
-                   [tools.2]\nlength = 100\ncutter = [[0, 30], [60, 30]]\n";
+/// A machine with a stock of 40 × 40 × 30 mm below Z0, an end mill, a thicker one and one for T-slots.
+const MILL: &str = "extends = \"vmc\"\nname = \"mine\"\n[stock]\nblock = [[-20, -20, -30], [20, 20, 0]]\n\
+                    [tools.1]\nlength = 100\ncutter = [[0, 5], [60, 5]]\n\
+                    [tools.2]\nlength = 100\ncutter = [[0, 30], [60, 30]]\n\
+                    [tools.3]\nlength = 100\ncutter = [[0, 10], [8, 10], [8, 4], [60, 4]]\n";
+
+/// What is said of a program that brings `tool` over the stock, and whether it is clear.
+fn milled(machine: &str, tool: u32, program: &str, more: &[&str]) -> (String, bool) {
+    let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("mine.toml"), machine).unwrap();
-    let program = |change: &str| {
-        format!(
-            "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT1 M6\nS1000 M3\nG54\nG0 X-100. Y0.\nG43 H1 Z50.\nG0 X0. \
-             Y0.\nG1 Z-20. F500.\n{change}G0 Z50.\nG53 G0 Z20.\nM30\n%\n"
-        )
-    };
-    for (change, code) in [("", 0), ("T2 M6\nG43 H2\n", 1)] {
-        fs::write(folder.path().join("part.nc"), program(change)).unwrap();
-        let run = post_in(
-            folder.path(),
-            &["clearance", "part.nc", "-m", "mine.toml", "--mount", "0,0,-300"],
-        );
-        assert_eq!(run.code, code, "{change}: {}{}", run.out, run.err);
+    let program = format!(
+        "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT{tool} M6\nS1000 M3\nG54\nG0 X-100. Y0.\nG43 H{tool} Z50.\n\
+         {program}G0 Z50.\nG0 X-100.\nG53 G0 Z20.\nM30\n%\n"
+    );
+    fs::write(folder.path().join("part.nc"), program).unwrap();
+    let cl = "PARTNO/A\nUNITS/MM\nCUTTER/10\nLOADTL/1\nFEDRAT/24000,MMPM\nGOTO/0,0,50\nGOTO/0,0,-20\nFINI\n";
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let mut words = vec!["clearance", "part.nc", "-m", "mine.toml", "--mount", "0,0,-300"];
+    words.extend(more);
+    let run = post_in(folder.path(), &words);
+    assert!(run.code < 2, "{}", run.err);
+    (format!("{}{}", run.out, run.err), run.code == 0)
+}
+
+/// At rapid a cutter goes where it has been: out of the cut, down again to where it was, back along the cut; and nowhere else.
+/// What a tool has cut another has not been in.
+#[test]
+fn a_rapid_goes_through_the_stock_where_the_tool_has_been() {
+    let cut = "G0 X0. Y0.\nG1 Z-20. F500.\n";
+    for (tool, program, clear) in [
+        (1, format!("{cut}G0 Z50.\n"), true),
+        (1, format!("{cut}T2 M6\nG43 H2\nG0 Z50.\n"), false),
+        // Words that are rounded lean by as much.
+        (1, format!("{cut}G0 X0.001 Z50.\n"), true),
+        (1, format!("{cut}G0 X0.02 Z50.\n"), false),
+        (1, "G0 X0. Y0.\nG99 G83 Z-20. R2. Q5. F200.\nG80\n".to_owned(), true),
+        (1, format!("{cut}G0 Z2.\nG0 Z-19.\nG1 Z-25.\n"), true),
+        (1, format!("{cut}G0 Z2.\nG0 Z-21.\n"), false),
+        (1, format!("{cut}G0 Z2.\nG0 X1.\nG0 Z-19.\n"), false),
+        // A cutter for T-slots goes out as it came, and not up.
+        (3, "G0 Z-20.\nG1 X0. F500.\nG0 X-100.\n".to_owned(), true),
+        (3, "G0 Z-20.\nG1 X0. F500.\nG0 Z50.\n".to_owned(), false),
+        (3, "G0 Z-20.\nG1 X0. F500.\nG0 X100.\n".to_owned(), false),
+    ] {
+        let (said, found) = milled(MILL, tool, &program, &[]);
+        assert_eq!(found, clear, "{program}: {said}");
     }
 }
 
@@ -120,6 +145,28 @@ fn a_tool_is_as_long_as_it_is_whatever_register_leads_it() {
             Some(said) => assert_contains(&run.err, &said),
         }
     }
+}
+
+/// What is as fast as a rapid is one where rapids stand at feed, but where the CL file cuts as fast.
+#[test]
+fn a_cut_as_fast_as_the_axes_is_one_by_the_cl_file() {
+    let machine = format!("{MILL}[control]\nrapid = \"linear\"\n");
+    let program = "G1 X0. F24000.\nG1 Z-20. F24000.\nG1 X10.\nG1 Z50.\n";
+    assert!(!milled(&machine, 1, program, &[]).1);
+    let (said, clear) = milled(&machine, 1, program, &["--cl", "part.cls"]);
+    assert!(clear, "{said}");
+}
+
+/// A machine stands at zero in no program that does not say so.
+#[test]
+fn where_axes_stand_before_a_program_leads_them_is_no_place() {
+    let post = |x: i32| {
+        format!("{MILL}[fixture.post]\nblock = [[{}, -10, -60], [{}, 10, -40]]\n", x - 10, x + 10)
+    };
+    let (said, clear) = milled(&post(0), 1, "", &[]);
+    assert!(clear, "{said}");
+    assert_contains(&said, &["does not say where it begins in Y, X, Z", "to line 8"]);
+    assert!(!milled(&post(-100), 1, "", &[]).1);
 }
 
 #[test]
@@ -360,7 +407,12 @@ fn farthest(tip: [f64; 3], axis: [f64; 3], [low, high]: [[f64; 3]; 2]) -> f64 {
 fn fixtures_that_were_put_in_the_way_are_all_found() {
     let (rounds, mut rng) = randomised(60, 321);
     let folder = folder("");
-    let stands = stands(&folder);
+    // Before that line it is not known where the machine stands.
+    let (said, _) = proven(&folder, &[]);
+    let known = said.split("the way to line ").nth(1).unwrap().split(' ').next().unwrap();
+    let known: u64 = known.parse().unwrap();
+    let mut stands = stands(&folder);
+    stands.retain(|(line, ..)| *line >= known);
     let (mut hits, mut clear_ones) = (0, 0);
     for _ in rounds {
         let (_, tip, axis) = stands[rng.pick(stands.len())];

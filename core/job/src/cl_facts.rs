@@ -4,9 +4,9 @@ use std::io::Read;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, SourceFiles};
-use post_readback::MOST_FAULTS;
 use post_readback::course::cl::{ClCourse, ClSettings, ClTool};
-use post_readback::course::{Course as _, CutRun};
+use post_readback::course::{Course as _, CourseItem, CutRun};
+use post_readback::{MOST_FAULTS, MotionKind};
 
 use crate::failure::Failure;
 use crate::files::ClSource;
@@ -18,6 +18,8 @@ use crate::settings::JobSettings;
 pub struct ClFacts {
     /// Its tools.
     pub tools: Vec<ClTool>,
+    /// The largest feed of a cut, mm/min; zero where none is known.
+    pub fastest: f64,
     /// Its texts that are lines of the program.
     pub own_lines: Vec<String>,
     /// Its files, as messages call them.
@@ -48,12 +50,17 @@ impl ClFacts {
         let mut course = ClCourse::new(settings, input);
         let mut faults: Vec<Diagnostic> = Vec::new();
         let mut cuts = CutRun::default();
+        let mut fastest = 0.0f64;
         loop {
-            // Nothing is asked of points.
+            // Nothing is asked of points but how fast they are cut.
             if course.next_cuts(&mut cuts) {
+                fastest = fastest.max(cuts.feed.unwrap_or(0.0));
                 continue;
             }
             match course.next() {
+                Ok(Some(CourseItem::Piece(piece))) if piece.kind == MotionKind::Feed => {
+                    fastest = fastest.max(piece.feed.unwrap_or(0.0));
+                }
                 Ok(Some(_)) => {}
                 Ok(None) => break,
                 Err(fault) if faults.len() < MOST_FAULTS => faults.push(*fault),
@@ -64,6 +71,7 @@ impl ClFacts {
             return Err(faults.into());
         }
         let own_lines = course.own_lines().map(str::to_owned).collect();
-        Ok(Self { tools: course.tools().to_vec(), own_lines, files: SourceFiles::default() })
+        let tools = course.tools().to_vec();
+        Ok(Self { tools, fastest, own_lines, files: SourceFiles::default() })
     }
 }

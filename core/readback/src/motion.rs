@@ -50,6 +50,9 @@ pub struct Motion {
     /// It is asked for in positions of the machine, not of the part (G53, G28, G30, M91, SUPA): where it leads says
     /// something about this machine alone.
     pub machine: bool,
+    /// Axes of which the program has said before this block where they go, a bit by place: the others are taken to stand at
+    /// zero where they have not moved.
+    pub led: u32,
     /// At feed, and as fast as a rapid of a machine whose rapids may stand so ([`crate::FedRapids`]).
     pub fast: bool,
     /// What holds while it goes on.

@@ -16,6 +16,12 @@ use post_report::solid;
 /// Triangles that are read of one file.
 const MOST_TRIANGLES: usize = 2_000_000;
 
+/// More of them say no more of what can be hit, and cost time.
+const MANY_TRIANGLES: usize = 200_000;
+
+/// Parts of a file that do not hang together: of each it is asked whether another body encloses it.
+const MOST_PARTS: usize = 10_000;
+
 /// What is known of a tool's shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ToolShape<'a> {
@@ -167,8 +173,18 @@ fn mesh(
     map: &dyn Fn(Vector3<f64>) -> Vector3<f64>,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Shape> {
-    let (_, shape) = read_mesh(path, at, map, findings)?;
-    findings.extend(mesh_fault(at.1, shape.faults(), at.0));
+    let (triangles, shape) = read_mesh(path, at, map, findings)?;
+    let (place, name) = at;
+    findings.extend(mesh_fault(name, shape.faults(), place));
+    if triangles.len() > MANY_TRIANGLES {
+        let message = format!(
+            "{name} has {} triangles: more than {MANY_TRIANGLES} cost time and say no more of what can be hit",
+            triangles.len()
+        );
+        let help = "a coarser mesh out of the CAD system";
+        let many = Diagnostic::warning("clearance-body", message);
+        findings.push(many.at(place.clone()).help(help));
+    }
     Some(shape)
 }
 
@@ -222,6 +238,12 @@ fn read_mesh(
             "it has no triangle with an area, or a corner farther than 100 m away".to_owned()
         }),
     });
+    let read = read.and_then(|shape| match shape.parts() {
+        parts if parts > MOST_PARTS => Err(format!(
+            "it falls apart into {parts} pieces that share no corner; at most {MOST_PARTS} are possible"
+        )),
+        _ => Ok(shape),
+    });
     match read {
         Ok(shape) => Some((triangles, shape)),
         Err(why) => {
@@ -233,13 +255,16 @@ fn read_mesh(
 
 /// What is wrong with a mesh that is used all the same.
 fn mesh_fault(name: &str, faults: MeshFaults, place: &Option<SourcePlace>) -> Option<Diagnostic> {
-    let MeshFaults { open, inverted, .. } = faults;
-    if open + inverted == 0 {
-        return None;
-    }
-    let message = format!(
-        "{name} is no closed surface: {open} edges are not those of two triangles, at {inverted} two do not agree what is outside; its surface counts, what is wholly inside it may be missed"
-    );
+    let MeshFaults { open, inverted, empty, .. } = faults;
+    let message = match (open + inverted, empty) {
+        (0, 0) => return None,
+        (0, _) => format!(
+            "{name} has {empty} parts without a volume: the two sides of a sheet; its surface counts"
+        ),
+        _ => format!(
+            "{name} is no closed surface: {open} edges are not those of two triangles, at {inverted} two do not agree what is outside; its surface counts, what is wholly inside it may be missed"
+        ),
+    };
     let help = "let the CAD system write it again, as a solid";
     Some(Diagnostic::warning("clearance-body", message).at(place.clone()).help(help))
 }

@@ -1,10 +1,12 @@
 //! Whether anything hits anything while an NC program runs.
 
+mod been;
 mod bodies;
 mod choice;
 mod left;
 mod names;
 mod of_job;
+mod start;
 mod summary;
 pub mod text;
 mod watch;
@@ -15,7 +17,7 @@ use post_clearance::proof::{Body, BodyKind, Proof, Rules};
 use post_machine::description::{GivenShape, Machine};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_machine::kinematics::{Joint, Joints};
-use post_readback::course::cl::{ClSettings, ClTool};
+use post_readback::course::cl::ClSettings;
 use post_readback::{MOST_FAULTS, ProgramRun};
 
 use crate::cl_facts::ClFacts;
@@ -77,18 +79,18 @@ pub fn clearance(
     control: &NcControl,
     request: &ClearanceRequest,
 ) -> Result<ClearanceFound, Failure> {
-    let tools = match &request.cl {
+    let facts = match &request.cl {
         Some(cl) => {
             let (name, file) = open_as(session, "the CL file", cl)?;
-            ClFacts::read(ClSettings::of(&control.machine, &name), file)?.tools
+            ClFacts::read(ClSettings::of(&control.machine, &name), file)?
         }
-        None => Vec::new(),
+        None => ClFacts::default(),
     };
     let program = ProgramFile::open(session, &request.input)?;
-    prove(control, &program.name, Box::new(program.text()?), &tools, None)
+    prove(control, &program.name, Box::new(program.text()?), &facts, None)
 }
 
-/// Proves the program `name` in `text`, which `control` runs; `tools` are those of its CL file. Who
+/// Proves the program `name` in `text`, which `control` runs; `facts` are those of its CL file. Who
 /// `hear`s is told of each motion how near any two bodies come on it.
 ///
 /// # Errors
@@ -97,16 +99,18 @@ pub fn prove(
     control: &NcControl,
     name: &str,
     text: ProgramText<'_>,
-    tools: &[ClTool],
+    facts: &ClFacts,
     hear: Option<&mut Hearer<'_>>,
 ) -> Result<ClearanceFound, Failure> {
     let machine = &control.machine;
     let mut findings = names::unknown(machine);
     let bodies = bodies::of_machine(machine, &mut findings);
-    let diameters = tools.iter().filter_map(|tool| Some((tool.number, tool.diameter?))).collect();
+    let tools = facts.tools.iter();
+    let diameters = tools.filter_map(|tool| Some((tool.number, tool.diameter?))).collect();
+    let cuts = Cuts { diameters, fastest: facts.fastest };
     let mut run = ProgramRun::new(control.program_with_rapids(name, text)?);
     let stock = left::CutStock::new(machine, &mut findings);
-    let mut watch = ClearanceWatch::new(control, bodies, diameters, hear, stock);
+    let mut watch = ClearanceWatch::new(control, bodies, cuts, hear, stock);
     while let Some(done) = run.block() {
         for what in done.iter() {
             watch.take(what);
@@ -131,6 +135,15 @@ pub fn files(machine: &Machine) -> impl Iterator<Item = &Path> {
             _ => None,
         });
     given.chain(machine.solids.iter().map(|solid| &solid.file)).map(PathBuf::as_path)
+}
+
+/// What a CL file tells of its cuts.
+#[derive(Clone, Debug, Default)]
+struct Cuts {
+    /// Diameters of the cutters by tool, mm.
+    diameters: Vec<(u32, f64)>,
+    /// The largest feed of a cut, mm/min; zero where none is known.
+    fastest: f64,
 }
 
 /// Links of the machine that no body hangs on.

@@ -26,8 +26,8 @@ pub fn of_job(
 ) -> Result<ClearanceFound, Failure> {
     let facts = ClFacts::of_job(reading.arguments, reading.machine, source)?;
     let mut control = reading.control(&facts.tools)?;
-    control.own_lines = facts.own_lines;
-    let mut found = prove(&control, name, Box::new(&mut text), &facts.tools, hear)?;
+    control.own_lines.clone_from(&facts.own_lines);
+    let mut found = prove(&control, name, Box::new(&mut text), &facts, hear)?;
     if found.is_wrong() {
         let again = text.rewind();
         again.map_err(|error| FileFault::Read { name: name.to_owned(), error })?;

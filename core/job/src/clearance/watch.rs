@@ -8,14 +8,16 @@ use post_machine::description::{Machine, RapidAxes};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use post_readback::{BlockEffect, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState};
 
+use super::been::Been;
 use super::bodies::{ToolShape, of_tool};
 use super::left::{Against, CutStock};
-use super::{ClearanceFound, proof};
+use super::start::{Known, Start};
+use super::{ClearanceFound, Cuts, proof};
 use crate::nc_program::NcControl;
 use crate::text::number as number_text;
 
-/// A tip that leaves the tool axis by less than this goes along it, mm.
-const ALONG: f64 = 1e-3;
+/// Half of the last place of a feed without decimals, mm/min.
+const FEED_PLACE: f64 = 0.5;
 
 /// A length in force may differ by so much from that of the tool, mm: wear, and what a measurement leaves.
 const WEAR: f64 = 0.5;
@@ -42,7 +44,7 @@ pub type Hearer<'h> = dyn FnMut(u64, f64) + 'h;
 pub(super) struct ClearanceWatch<'a, 'h> {
     control: &'a NcControl,
     fixed: Vec<Body>,
-    diameters: Vec<(u32, f64)>,
+    cuts: Cuts,
     proof: Proof,
     /// The stock, if it gets less by what is cut.
     stock: Option<CutStock>,
@@ -50,8 +52,10 @@ pub(super) struct ClearanceWatch<'a, 'h> {
     tool: Option<(u32, Option<f64>)>,
     /// The cutter is nowhere thinner than nearer to its tip.
     widens: bool,
-    /// The tool has come to where it stands by a motion since it was changed: another one would have been there.
-    came: bool,
+    /// Where the tool has been since it was changed: another one would have been there before.
+    been: Been,
+    /// Where the program begins.
+    start: Start,
     /// It was said that the spindle turns the part.
     turns_part: bool,
     /// The tool of which it was said that another length leads it.
@@ -70,7 +74,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
     pub fn new(
         control: &'a NcControl,
         fixed: Vec<Body>,
-        diameters: Vec<(u32, f64)>,
+        cuts: Cuts,
         hear: Option<&'a mut Hearer<'h>>,
         stock: Option<CutStock>,
     ) -> Self {
@@ -88,11 +92,12 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             proof,
             control,
             fixed,
-            diameters,
+            cuts,
             stock,
             tool: None,
             widens: true,
-            came: false,
+            been: Been::default(),
+            start: Start::default(),
             turns_part: false,
             misled: None,
             rows: BTreeMap::new(),
@@ -133,7 +138,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
         self.hold_lengths(motion);
         let at_rapid = motion.kind == MotionKind::Rapid;
-        let rapid = at_rapid || motion.fast;
+        // As fast as a rapid may be a cut that an axis holds up: it is, if the CL file cuts as fast.
+        let rapid = at_rapid || motion.fast && motion.feed > self.cuts.fastest + FEED_PLACE;
         let together = self.control.machine.clearance.rapid_axes == RapidAxes::Together;
         let way = Way {
             solver: &motion.state.solver,
@@ -141,9 +147,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             ends: [&motion.from, &motion.to],
             independent: at_rapid && !together,
         };
-        // What goes along its own axis sweeps what it has been in before, if it is nowhere thinner above.
-        let came = std::mem::replace(&mut self.came, true);
-        let cuts = !rapid || (came && self.widens && withdraws(motion, way.independent));
+        let cuts = !rapid || self.been.covers(motion, way.independent, self.widens);
+        self.been.take(motion, way.independent);
         let lessens = self.stock.is_some();
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
@@ -152,6 +157,14 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             }
             let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
             !(touches && cuts)
+        };
+        let way = match self.start.knows(&self.control.machine, motion) {
+            Known::Way => way,
+            Known::End => {
+                let ends = [&motion.to; 2];
+                Way { interpolation: &Interpolation::Axes, ends, independent: false, ..way }
+            }
+            Known::Nothing => return,
         };
         self.proof.take(&Move { way, rapid, line: motion.line }, looks);
         if let Some((hear, proof)) = &mut self.told
@@ -217,7 +230,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             return;
         }
         self.tool = Some((number, length));
-        self.came = false;
+        self.been = Been::default();
         self.put_down();
         let machine = &self.control.machine;
         let mut bodies = self.fixed.clone();
@@ -273,7 +286,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
     fn radius_of(&self, number: u32) -> Option<f64> {
         let table = self.control.machine.tool_table.as_ref();
         let tool = table.and_then(|table| table.entry(number, number)?.diameter());
-        let cl = || self.diameters.iter().find(|(tool, _)| *tool == number).map(|(_, size)| *size);
+        let cl =
+            || self.cuts.diameters.iter().find(|(tool, _)| *tool == number).map(|(_, size)| *size);
         tool.or_else(cl).filter(|size| *size > 0.0).map(|size| 0.5 * size)
     }
 
@@ -324,6 +338,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
         let at = |line| Some(SourcePlace::new(name, line, "", 0..0));
         let mut found = self.found;
+        let began = self.start.told(&self.control.machine);
+        found.findings.extend(began.map(|(line, warning)| warning.at(at(line))));
         for (line, message, help) in self.faults {
             found.findings.push(Diagnostic::error("clearance", message).at(at(line)).help(help));
         }
@@ -361,19 +377,6 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
         found
     }
-}
-
-/// The tool is drawn out along its axis, straight.
-fn withdraws(motion: &Motion, independent: bool) -> bool {
-    let (from, to) = (&motion.from, &motion.to);
-    let moving = from.joints.iter().zip(&to.joints).filter(|(from, to)| from != to).count();
-    let way = to.pose.tip - from.pose.tip;
-    let along = way.dot(&from.pose.axis);
-    !motion.turns()
-        && !motion.way.is_curved()
-        && (moving <= 1 || !independent)
-        && along >= 0.0
-        && (way - from.pose.axis * along).norm() <= ALONG
 }
 
 /// What is wrong with a pair of bodies.

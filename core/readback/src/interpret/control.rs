@@ -144,6 +144,7 @@ impl ControlState {
             },
             shared: None,
             said: 0,
+            led: 0,
             fed: false,
             begun: false,
             at: Stance::default(),

@@ -506,6 +506,7 @@ impl ControlState {
             stops: self.exact_stop,
             hole: self.hole,
             machine: self.in_machine,
+            led: self.led,
             fast: false,
             state,
         }));

@@ -133,6 +133,7 @@ impl Runner {
         self.control.line = block.line;
         self.control.number = block.number;
         self.control.exact_stop = false;
+        self.control.led = self.control.said;
         if block.skipped {
             self.control.say_skipped();
         }

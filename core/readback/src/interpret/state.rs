@@ -64,6 +64,8 @@ pub(super) struct ControlState {
     pub(super) shared: Option<Arc<MachineState>>,
     /// Bits of the places of axes of which the program has said where they go.
     pub said: u32,
+    /// The same before the block that is run.
+    pub led: u32,
     /// Something was fed.
     pub fed: bool,
     /// A tool was changed, or led to the part.

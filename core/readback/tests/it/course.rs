@@ -59,6 +59,7 @@ fn motion(state: &Arc<MachineState>, way: Interpolation, from: Joints, to: Joint
         stops: false,
         hole: false,
         machine: false,
+        led: u32::MAX,
         fast: false,
         state: Arc::clone(state),
     }

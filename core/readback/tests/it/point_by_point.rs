@@ -98,6 +98,7 @@ fn program(
             stops: false,
             hole: false,
             machine: false,
+            led: u32::MAX,
             fast: false,
             state: Arc::clone(state),
         })

@@ -172,6 +172,7 @@ impl Does {
             stops: false,
             hole: false,
             machine: false,
+            led: u32::MAX,
             fast: false,
             state: Arc::clone(&self.state),
         }));

@@ -49,7 +49,7 @@ fn job(machine: &str, moves: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let tool = "TLDATA/MILL,10,0,100,0,0\nLOAD/TOOL,3\nSPINDL/RPM,6000,CLW\n";
     fs::write(folder.path().join("setter.toml"), machine).unwrap();
-    fs::write(folder.path().join("facet.cls"), format!("{tool}{moves}END-OF-PATH\n")).unwrap();
+    fs::write(folder.path().join("facet.cls"), format!("{tool}{moves}FINI\n")).unwrap();
     folder
 }
 

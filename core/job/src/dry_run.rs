@@ -1,5 +1,6 @@
 //! One CL file on one machine, posted as often as it takes, its text thrown away.
 
+use std::io::Seek as _;
 use std::num::NonZeroUsize;
 
 use post_host::{Finder, OpenedDialect};
@@ -9,17 +10,24 @@ use post_plugin::{Batch, Capabilities, DialectSession, Format, WriteFault};
 use post_posting::Observer;
 use post_posting::program::DefaultSpindle;
 use post_posting::report::PostingReport;
+use post_readback::interpret::Limits;
 
+use super::clearance::{self, ClearanceFound};
+use super::one_program::OneProgram;
 use super::plugin_finder;
-use super::posting_pass::{self, OpenedPlugins, PostingPass, ProgramHead};
+use super::posting_pass::{self, OpenedPlugins, PostingExtras, PostingPass, ProgramHead};
+use super::read_back::ReadingSetup;
 use crate::failure::Failure;
-use crate::files::ClSource;
+use crate::files::{ClSource, FileFault, Scratch};
 use crate::operations;
 use crate::session::Session;
 use crate::settings::JobSettings;
 
 /// Decimals that leave axis values as they are solved: a millionth of a micrometre.
 const EXACT: u8 = 9;
+
+/// What messages call a program that is tried.
+const TRIED: &str = "the program that is tried";
 
 /// A CL file and how it is looked at.
 pub struct DryRun<'a> {
@@ -33,6 +41,8 @@ pub struct DryRun<'a> {
     exact: bool,
     /// Threads that a pass is made on at most.
     pub threads: NonZeroUsize,
+    /// Solutions are chosen with which bodies stay clear.
+    pub keeps_clear: bool,
 }
 
 impl<'a> DryRun<'a> {
@@ -57,6 +67,7 @@ impl<'a> DryRun<'a> {
             finder: plugin_finder::finder(session, &arguments.over.plugins)?,
             exact,
             threads: NonZeroUsize::MIN,
+            keeps_clear: false,
         })
     }
 
@@ -104,11 +115,66 @@ impl<'a> DryRun<'a> {
             threads: self.threads,
             dialect: &mut dialect,
             model: &mut model,
+            keeps_clear: self.keeps_clear,
         };
         match pass.run_dry(&self.session, input, watch)? {
             (Some(report), findings) => Ok((report, findings)),
             (None, findings) => Err(findings.into()),
         }
+    }
+}
+
+impl DryRun<'_> {
+    /// Writes the program, reads it back, and proves that nothing hits anything while it runs.
+    ///
+    /// # Errors
+    /// Why it cannot be made or read.
+    pub fn prove(&self, machine: &Machine) -> Result<ClearanceFound, Failure> {
+        let mut arguments = self.arguments.clone();
+        // How fast the spindle turns is nobody's business.
+        arguments.reading.spindle.get_or_insert(DefaultSpindle::Still);
+        let machine = &machine.without_text();
+        let mut source = ClSource::of_job(&self.session, &arguments, true)?;
+        let lines = operations::chosen(&arguments, &mut source)?;
+        let ranges = lines.as_ref().map(|lines| lines.ranges.clone());
+        let mut text = Scratch::new(TRIED)?;
+        let program = OneProgram {
+            session: &self.session,
+            arguments: &arguments,
+            machine,
+            finder: &self.finder,
+            target: &arguments.input,
+            lines,
+            trust_model: false,
+            plans: false,
+            threads: self.threads,
+            tightening: None,
+            keeps_clear: self.keeps_clear,
+        };
+        let beside = PostingExtras::default();
+        if let (None, findings) = program.write(None, &mut source, &mut text, beside)? {
+            return Err(findings.into());
+        }
+        let reading = ReadingSetup {
+            session: &self.session,
+            arguments: &arguments,
+            machine,
+            finder: &self.finder,
+            offsets: None,
+            limits: Limits::default(),
+            tolerances: [None, None],
+            planned: false,
+            any_coolant: false,
+            any_work_offset: true,
+            own: true,
+            solutions: false,
+            lines: ranges,
+            threads: self.threads,
+        };
+        let mut text = text.reread()?;
+        let again = text.rewind();
+        again.map_err(|error| FileFault::Read { name: TRIED.to_owned(), error })?;
+        clearance::of_job(&reading, &mut source, TRIED, Box::new(text), None)
     }
 }
 

@@ -39,6 +39,7 @@ pub fn look_ahead(
         threads: NonZeroUsize::MIN,
         dialect: &mut dialect,
         model: &mut model,
+        keeps_clear: false,
     };
     let time = match pass.run_dry(session, input, Some(&mut ahead))? {
         (Some(report), _) => report.time_s,

@@ -186,6 +186,8 @@ pub struct ProgramMaker<'a> {
     pub ahead: Option<ProgramPreview>,
     /// Threads that work at most.
     pub threads: NonZeroUsize,
+    /// Solutions are chosen with which bodies stay clear, whatever the machine file says.
+    pub keeps_clear: bool,
 }
 
 impl<'a> ProgramMaker<'a> {
@@ -211,7 +213,7 @@ impl<'a> ProgramMaker<'a> {
         finder: Finder,
     ) -> Self {
         let threads = ThreadSettings::default().most();
-        Self { session, job, making, finder, ahead: None, threads }
+        Self { session, job, making, finder, ahead: None, threads, keeps_clear: false }
     }
 
     /// Makes the first pass over the CL file where texts of the machine ask for what it finds.
@@ -268,6 +270,7 @@ impl<'a> ProgramMaker<'a> {
             plans: self.making.plan,
             threads: self.threads,
             tightening: None,
+            keeps_clear: self.keeps_clear,
         };
         PreparedProgram::new(program, self.making, self.ahead.as_ref(), source, shown)
     }

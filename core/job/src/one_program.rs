@@ -41,6 +41,8 @@ pub struct OneProgram<'a> {
     pub threads: NonZeroUsize,
     /// Where that plan may use less than the limit of the contour error.
     pub tightening: Option<Arc<Tightening>>,
+    /// Solutions are chosen with which bodies stay clear, whatever the machine file says.
+    pub keeps_clear: bool,
 }
 
 impl OneProgram<'_> {
@@ -64,6 +66,7 @@ impl OneProgram<'_> {
             plans,
             threads,
             tightening,
+            keeps_clear,
         } = self;
         let cl_file = &arguments.input;
         let program = super::program_name(cl_file, Some(target));
@@ -102,7 +105,7 @@ impl OneProgram<'_> {
             ..posting_pass::posting_request(arguments, &input)
         };
         let (dialect, model) = (&mut dialect, &mut model);
-        let pass = PostingPass { machine, request, threads, dialect, model };
+        let pass = PostingPass { machine, request, threads, dialect, model, keeps_clear };
         let (mut report, findings) = pass.write(session, input, file, beside)?;
         if let Some(report) = &mut report {
             report.plugins = uses.to_vec();

@@ -85,6 +85,8 @@ pub struct PostingPass<'a> {
     pub dialect: &'a mut dyn DialectSession,
     /// Foresees deviations.
     pub model: &'a mut dyn ModelSession,
+    /// Solutions are chosen with which bodies stay clear, whatever the machine file says.
+    pub keeps_clear: bool,
 }
 
 impl PostingPass<'_> {
@@ -99,11 +101,15 @@ impl PostingPass<'_> {
         sink: &mut dyn TextSink,
         beside: PostingExtras<'_, '_, '_>,
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
-        let Self { machine, request, threads, dialect, model } = self;
+        let Self { machine, request, threads, dialect, model, keeps_clear } = self;
         let opened = machine.with_part_anywhere();
         let machine = opened.as_ref().unwrap_or(machine);
         let mut told = Vec::new();
-        let mut bodies = ChoiceBodies::of(machine, &mut told)?;
+        let chooses = keeps_clear || machine.clearance.choose;
+        let mut bodies = match chooses {
+            true => Some(ChoiceBodies::of(machine, &mut told)?),
+            false => None,
+        };
         // Blocks are shown with the lines that they end on: whoever looks on waits for the text of each batch.
         let beside_text = threads > NonZeroUsize::MIN && beside.observer.is_none();
         let post = Post::new(machine, request, dialect, model, sink);
@@ -149,10 +155,10 @@ impl PostingPass<'_> {
         input: ClInput,
         observer: Option<&mut dyn Observer>,
     ) -> Result<(Option<PostingReport>, Vec<Diagnostic>), Failure> {
-        let Self { machine, request, threads, dialect, model } = self;
+        let Self { machine, request, threads, dialect, model, keeps_clear } = self;
         let machine = &machine.without_text();
         let beside = PostingExtras { observer, ..PostingExtras::default() };
-        let pass = PostingPass { machine, request, threads, dialect, model };
+        let pass = PostingPass { machine, request, threads, dialect, model, keeps_clear };
         pass.write(session, input, &mut NullSink, beside)
     }
 
@@ -186,7 +192,8 @@ pub fn try_opening(machine: &Machine, finder: &Finder, length: f64) -> Result<()
     };
     let request = PostingRequest { tool_length: Some(length), ..PostingRequest::default() };
     let (dialect, model) = (&mut opened.dialect, &mut opened.model);
-    PostingPass { machine, request, threads: NonZeroUsize::MIN, dialect, model }.check()
+    let (threads, keeps_clear) = (NonZeroUsize::MIN, false);
+    PostingPass { machine, request, threads, dialect, model, keeps_clear }.check()
 }
 
 /// How the CL file is posted.

@@ -91,8 +91,8 @@ pub fn post(
     };
     let request = PostingRequest { reading, tool_length, ahead, ..PostingRequest::default() };
     let (dialect, model) = (&mut opened.dialect, &mut opened.model);
-    let pass =
-        PostingPass { machine: &machine, request, threads: NonZeroUsize::MIN, dialect, model };
+    let (threads, keeps_clear) = (NonZeroUsize::MIN, false);
+    let pass = PostingPass { machine: &machine, request, threads, dialect, model, keeps_clear };
     let mut watch = LineObserver::default();
     let (report, found) = match pass.run_dry(&library.session, input(of, token), Some(&mut watch)) {
         _ if token.is_given_up() => return None,

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use post_posting::report::AxisRange;
 
 use super::PlaceArguments;
+use post_job::clearance::ClearanceSummary;
 use post_job::place::{Least, MountSearchResult, Trial, mount_text};
 use post_job::text::{clock, number};
 use post_job::text_table::{NamedValues, TextTable};
@@ -46,6 +47,7 @@ pub fn text(arguments: &PlaceArguments, found: &MountSearchResult) -> String {
         },
         format_args!("{}{}", cost(arguments, best), before.unwrap_or_default()),
     );
+    rows.row_if("clearance", best.clearance.as_ref().map(ClearanceSummary::fact));
     let mut text = rows.lines(10);
     table(&best.report.axes).below(&mut text);
     // Writing to a String cannot fail.
@@ -77,6 +79,9 @@ fn why(arguments: &PlaceArguments, found: &MountSearchResult) -> String {
     let fits = match (stays, &found.present) {
         (true, _) => "where the part sits now nothing leaves its travel, and",
         (false, Some(_)) => "there every axis stays inside travel, and",
+        (false, None) if found.hits_here => {
+            "where the part sits now it is not proven that nothing hits anything; there it is, and"
+        }
         (false, None) => "where the part sits now an axis leaves its travel; there none does, and",
     };
     let least = match arguments.least {

@@ -189,6 +189,7 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         session.findings(&other.into_iter().collect::<Vec<_>>());
     }
     maker.threads = arguments.threads.0.most();
+    maker.keeps_clear = outputs.clearance;
     let mut source = ClSource::of_job(session, job, arguments.reads_twice(&machine))?;
     let chosen = operations::chosen(job, &mut source)?;
     if arguments.looks_ahead(&machine) {

@@ -185,6 +185,7 @@ impl OneJob<'_> {
         let mut maker = ProgramMaker::new(self.session, self.arguments, &making, finder);
         // The jobs are side by side already.
         maker.threads = NonZeroUsize::MIN;
+        maker.keeps_clear = options.clearance;
         let mut source = self.source();
         let mut findings = unused_options::found(&part.machine, &maker.finder);
         maker.look_ahead_where_needed(&part.machine, &mut source)?;

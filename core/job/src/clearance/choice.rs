@@ -50,14 +50,11 @@ pub(crate) struct ChoiceBodies<'a> {
 }
 
 impl<'a> ChoiceBodies<'a> {
-    /// Those of a machine whose file asks for the choice; none of another. Warnings go to `told`.
+    /// Those of a machine; warnings go to `told`.
     ///
     /// # Errors
     /// A body that cannot be had.
-    pub fn of(machine: &'a Machine, told: &mut Vec<Diagnostic>) -> Result<Option<Self>, Failure> {
-        if !machine.clearance.choose {
-            return Ok(None);
-        }
+    pub fn of(machine: &'a Machine, told: &mut Vec<Diagnostic>) -> Result<Self, Failure> {
         let mut findings = names::unknown(machine);
         let fixed = bodies::of_machine(machine, &mut findings);
         if findings.iter().any(|finding| finding.severity == Severity::Error) {
@@ -65,7 +62,7 @@ impl<'a> ChoiceBodies<'a> {
         }
         told.append(&mut findings);
         let (tool, tracks, asked) = (Vec::new(), Vec::new(), VecDeque::new());
-        Ok(Some(Self { machine, fixed, tool, tracks, asked, count: 0 }))
+        Ok(Self { machine, fixed, tool, tracks, asked, count: 0 })
     }
 
     /// The track that stands on `joints`; else another begins, in the place of the one that was asked longest ago.

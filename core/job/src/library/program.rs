@@ -159,6 +159,7 @@ impl Request {
     ) -> Result<(ProgramMaker<'a>, ProgramPart, ClSource), Failure> {
         let (mut maker, machine) = ProgramMaker::open(session, &self.job, &self.making)?;
         maker.threads = self.threads.most();
+        maker.keeps_clear = self.clearance;
         let mut source = ClSource::of_job(session, &self.job, true)?;
         maker.look_ahead_where_needed(&machine, &mut source)?;
         let target = making::target(&self.job, self.output.as_ref(), &machine, &maker.finder)?;

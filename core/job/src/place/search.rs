@@ -39,6 +39,8 @@ pub struct MountSearchResult {
     pub best: Trial,
     /// Where the command line and the machine file have it, if it can be posted there.
     pub present: Option<Trial>,
+    /// There something hits, or that it does not is not proven.
+    pub hits_here: bool,
     /// Dry runs that were made.
     pub runs: u32,
     /// The number of dry runs ended the search.
@@ -120,6 +122,7 @@ impl<'s, 'a> Search<'s, 'a> {
         if self.request.least == Least::Time && !evenly {
             self.settle(&mut trial, &bounds)?;
         }
+        let hits_here = present.as_ref().is_err_and(|findings| hits(findings));
         let present = present.ok();
         if let Some(present) = &present
             && self.holds(present)
@@ -132,6 +135,7 @@ impl<'s, 'a> Search<'s, 'a> {
             machine: self.machine,
             best: trial,
             present,
+            hits_here,
             runs: self.trials.runs,
             spent: self.trials.left() < A_LOOK,
             evenly,
@@ -213,6 +217,13 @@ impl<'s, 'a> Search<'s, 'a> {
             match self.trials.post(seat)? {
                 Ok(trial) if self.holds(&trial) => return Ok(Ok(seated(trial, bounds))),
                 Ok(_) => {}
+                Err(findings) if hits(&findings) => {
+                    refused = findings;
+                    if let Some(trial) = self.clear_place(turn, &bounds)? {
+                        return Ok(Ok(seated(trial, bounds)));
+                    }
+                    break;
+                }
                 Err(findings) => refused = findings,
             }
             if self.trials.left() < A_LOOK || !(refused.is_empty() || out_of_travel(&refused)) {
@@ -220,6 +231,29 @@ impl<'s, 'a> Search<'s, 'a> {
             }
         }
         Ok(Err(NoMount::Refused(refused)))
+    }
+
+    /// The cheapest of the mounts all over the room where nothing hits anything, of equals the one nearest to the present.
+    fn clear_place(&mut self, turn: f64, bounds: &[TravelBound]) -> Result<Option<Trial>, Failure> {
+        let bodies = bodies(bounds);
+        let places = spread(&bodies, &self.present.mount, self.margin() + ROUNDING, PLACES);
+        let seats: Vec<PartMount> =
+            places.iter().map(|mount| PartMount { mount: tidy(mount), turn }).collect();
+        let mut best: Option<Trial> = None;
+        for posted in self.trials.post_all(&seats) {
+            let nearer = |trial: &Trial, best: &Trial| {
+                let far = |trial: &Trial| (trial.seat.mount - self.present.mount).norm();
+                let alike = trial.cost < best.cost * (1.0 + WORTH);
+                trial.cost < best.cost * (1.0 - WORTH) || alike && far(trial) < far(best)
+            };
+            if let Ok(trial) = posted?
+                && self.holds(&trial)
+                && best.as_ref().is_none_or(|best| nearer(&trial, best))
+            {
+                best = Some(trial);
+            }
+        }
+        Ok(best)
     }
 
     /// The cheapest of all turns, `step` degrees apart, and then more closely about it.
@@ -455,6 +489,11 @@ struct BoundedMount {
 fn out_of_travel(findings: &[Diagnostic]) -> bool {
     let codes = ["over-travel", "out-of-reach"];
     findings.iter().any(|finding| codes.contains(&finding.code))
+}
+
+/// Something hits, or that it does not is not proven.
+fn hits(findings: &[Diagnostic]) -> bool {
+    findings.iter().any(|finding| finding.code == "clearance")
 }
 
 /// Without what sums leave in the last digits: as it is told, so it is tried.

@@ -15,6 +15,7 @@ use post_posting::report::PostingReport;
 
 use super::{Least, PlaceRequest};
 use crate::DryRun;
+use crate::clearance::ClearanceSummary;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::settings::JobSettings;
@@ -41,6 +42,8 @@ pub struct Trial {
     pub cost: f64,
     /// The least that is left to the end of any linear axis, mm; infinite where nothing ends.
     pub room: f64,
+    /// What was proven of it, where the machine has bodies about the part.
+    pub clearance: Option<ClearanceSummary>,
 }
 
 /// An end of travel that bounds the mount.
@@ -85,6 +88,9 @@ impl<'a> Trials<'a> {
     ) -> Result<Self, Failure> {
         let mut dry_run = DryRun::new(session, "place", "post", job, false)?;
         dry_run.threads = request.threads;
+        let machine = dry_run.machine(&[])?;
+        // What stands about the part.
+        dry_run.keeps_clear = machine.stock.is_some() || !machine.fixtures.is_empty();
         Ok(Self { dry_run, least: request.least, runs: 0, most: request.runs })
     }
 
@@ -189,10 +195,25 @@ fn machine_at(dry_run: &DryRun<'_>, seat: &PartMount) -> Result<Machine, Failure
 /// Posts the file with the part there; the findings if it cannot be.
 fn posted(dry_run: &DryRun<'_>, least: Least, seat: PartMount) -> PostedTrial {
     let machine = machine_at(dry_run, &seat)?;
-    let (report, findings) = match dry_run.pass(&machine, None) {
+    let (report, mut findings) = match dry_run.pass(&machine, None) {
         Ok(posted) => posted,
         Err(Failure::Refused(findings)) => return Ok(Err(findings)),
         Err(failure) => return Err(failure),
+    };
+    let clearance = match dry_run.keeps_clear {
+        true => match dry_run.prove(&machine) {
+            Ok(proven) if proven.pairs.iter().any(|pair| pair.faults > 0) => {
+                return Ok(Err(proven.findings));
+            }
+            Ok(proven) if proven.is_wrong() => {
+                findings.extend(proven.findings.into_iter().map(unproven));
+                None
+            }
+            Ok(proven) => Some(proven.summary()),
+            Err(Failure::Refused(findings)) => return Ok(Err(findings)),
+            Err(failure) => return Err(failure),
+        },
+        false => None,
     };
     let rotary = |name: &str| machine.with_axis(name).is_some_and(|(_, axis)| axis.joint.rotary);
     let turning = report.axes.iter().filter(|axis| rotary(&axis.name));
@@ -206,7 +227,15 @@ fn posted(dry_run: &DryRun<'_>, least: Least, seat: PartMount) -> PostedTrial {
         let left = (range.min - least).min(most - range.max);
         follows_the_part(machine, axis).then_some(left)
     });
-    Ok(Ok(Trial { room: left.fold(f64::INFINITY, f64::min), seat, cost, findings, report }))
+    let room = left.fold(f64::INFINITY, f64::min);
+    Ok(Ok(Trial { room, seat, cost, findings, report, clearance }))
+}
+
+/// What is not known of the bodies does not speak against a mount, but nothing is proven there.
+fn unproven(finding: Diagnostic) -> Diagnostic {
+    let message = format!("it is not proven that nothing hits anything: {}", finding.message);
+    let place = finding.place.filter(|place| place.line == 0);
+    Diagnostic { severity: Severity::Warning, message, place, ..finding }
 }
 
 /// A linear axis whose room the mount decides: one that stands between cuts, and one that waits at its end until another

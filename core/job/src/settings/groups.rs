@@ -204,7 +204,7 @@ settings! {
 
     /// Proves that nothing hits anything while each program runs, before it is written (`post clearance`): reads it back, and
     /// holds the bodies of the machine file against one another along all motions. A program that is not clear is not
-    /// written.
+    /// written. Of several ways to turn the axes those are taken with which it is, where there are any.
     flag clearance;
 
     /// Predicts what each program does on the machine (`post predict`): cycle time, true feed, axis motion and contour

@@ -12,12 +12,13 @@ use std::fmt::Debug;
 use post_machine::axis_words;
 use post_machine::description::{Machine, Pole};
 use post_machine::diagnostic::Diagnostic;
-use post_machine::kinematics::{Joints, Pose, Solver};
+use post_machine::kinematics::{Joints, Solver};
 
 use super::backtrace::Backtrace;
 use super::route::Route;
-use super::trellis::{ArrivalKind, CutChecker, Trellis, TrellisLayer};
+use super::trellis::{ArrivalKind, Trellis, TrellisLayer, pose};
 use crate::accuracy::Placer;
+use crate::program::StraightMove;
 
 /// Points that wait at most to be decided: a pass is one choice.
 const LONGEST_PASS: usize = 20_000;
@@ -136,6 +137,29 @@ impl BodyTrial<'_> {
         self.bodies.contact(&turn).or_else(|| self.bodies.contact(&down))
     }
 
+    /// What is hit while the tool is drawn back at a point, turned from one end to the other, and brought back.
+    fn rewinds(
+        &mut self,
+        machine: &Machine,
+        placer: &Placer,
+        motion: &StraightMove,
+        ends: [&Joints; 2],
+    ) -> Vec<Contact> {
+        let along = machine.control_point.along;
+        let back = machine.rewind.and_then(|rewind| motion.drawn_back(&rewind, along));
+        let Some(back) = back.map(|back| pose(&back)) else {
+            return Vec::new();
+        };
+        let away = ends.map(|joints| placer.settled(back, 1.0, joints).map(|at| at.trace.joints));
+        let [Ok(away), Ok(turned)] = away else {
+            return Vec::new();
+        };
+        let (solver, kind) = (placer.solver(), TrialWayKind::Rapid);
+        let ways = [[ends[0], &away], [&away, &turned], [&turned, ends[1]]];
+        let mut contact = |ends| self.bodies.contact(&TrialWay { solver, ends, kind });
+        ways.into_iter().filter_map(|ends| contact(ends)).collect()
+    }
+
     /// What the way from `from` to the retract hits.
     fn departs(&mut self, machine: &Machine, solver: &Solver, from: &Joints) -> Option<Contact> {
         let above = retracted(machine, solver, from);
@@ -178,18 +202,29 @@ impl<'a> Route<'a> {
 
     /// The first hit of the way that is to be settled.
     pub(super) fn first_hit(&mut self, way: &Backtrace) -> Option<Hit> {
+        // Where each point has one solution nothing is to be chosen.
+        let chooses = self.trellis.states.len() > self.trellis.layers.len();
+        chooses.then(|| self.hit_of(way)).flatten()
+    }
+
+    /// The first hit of a way.
+    fn hit_of(&mut self, way: &Backtrace) -> Option<Hit> {
         let Self { trellis, settings, machine, judge, rewound, anchored, departs, near, .. } = self;
         let bodies = judge.bodies.as_mut()?;
         let count = trellis.layers.len();
         for layer in usize::from(*anchored)..count {
             let at = &trellis.layers[layer];
             let from = layer.checked_sub(1).map_or(*near, |before| way.joints(trellis, before));
-            let to = match trellis.states[way.states[layer]].rewind {
-                Some(before) => rewound[before],
-                None => way.joints(trellis, layer),
-            };
+            let stands = way.joints(trellis, layer);
+            let rewind = trellis.states[way.states[layer]].rewind.map(|before| &rewound[before]);
+            let to = rewind.unwrap_or(&stands);
             let placer = &settings[at.setting].1;
-            let found = bodies.arrives(machine, placer, at.kind, &from, &to);
+            let turned = |bodies: &mut BodyTrial<'_>| {
+                let ends = [rewind?, &stands];
+                bodies.rewinds(machine, placer, &at.motion, ends).into_iter().next()
+            };
+            let arrives = bodies.arrives(machine, placer, at.kind, &from, to);
+            let found = arrives.or_else(|| turned(bodies));
             if let Some(contact) = found {
                 return Some(Hit { line: at.line, contact });
             }
@@ -222,7 +257,7 @@ impl<'a> Route<'a> {
                 break;
             }
         }
-        let (line, told) = match self.first_hit(way) {
+        let (line, told) = match self.hit_of(way) {
             Some(left) => (left.line, hits_however(self.machine, &left.contact)),
             None => (hit.line, chosen_clear(self.machine, &hit.contact)),
         };
@@ -246,15 +281,19 @@ impl<'a> Route<'a> {
         self.try_rewind(at.line, &at.motion) || self.goes_on(at.line, &at.motion)
     }
 
-    /// What drawing the tool back to `back`, turning it and bringing it back adds to the ways that hit something.
-    pub(super) fn rewind_hits(&mut self, placer: &Placer, back: &Pose, ends: [&Joints; 2]) -> u32 {
-        let away = ends.map(|joints| placer.settled(*back, 1.0, joints).map(|at| at.trace.joints));
-        let [Ok(away), Ok(turned)] = away else {
-            return 0;
-        };
-        let ways = [[ends[0], &away], [&away, &turned], [&turned, ends[1]]];
-        let judge = &mut self.judge;
-        ways.into_iter().map(|[from, to]| judge.hits(placer, ArrivalKind::Rapid, from, to)).sum()
+    /// What a rewind at a point adds to the ways that hit something.
+    pub(super) fn rewind_hits(
+        &mut self,
+        placer: &Placer,
+        motion: &StraightMove,
+        ends: [&Joints; 2],
+    ) -> u32 {
+        match &mut self.judge.bodies {
+            Some(bodies) if self.judge.weighs => {
+                bodies.rewinds(self.machine, placer, motion, ends).len() as u32
+            }
+            _ => 0,
+        }
     }
 
     /// Adds what the ways from the last point to the retract hit.

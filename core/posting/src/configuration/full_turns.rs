@@ -130,7 +130,7 @@ impl ChoiceAxes {
     }
 
     /// Calls `take` with every set of turns that `stand` can have inside travel; axes without travel are put on
-    /// the turn nearest to `last`, free ones where they were.
+    /// the turn nearest to `last` (or on the next beyond it too), free ones where they were.
     pub(crate) fn turned(
         &self,
         stand: &AxisSolution,
@@ -168,8 +168,11 @@ impl ChoiceAxes {
         }
         match axis.travel {
             None => {
-                let turn = f64::round((last[joint] - base) / TAU);
-                go(base + TAU * turn);
+                let nearest = base + TAU * f64::round((last[joint] - base) / TAU);
+                go(nearest);
+                if self.both_ways {
+                    go(nearest + TAU.copysign(last[joint] - nearest));
+                }
             }
             Some([least, most]) => {
                 let mut turn = f64::ceil((least - base) / TAU);

@@ -203,7 +203,7 @@ impl Route<'_> {
                 continue;
             }
             let state = &states[place];
-            let hits = self.rewind_hits(&placer, &pose(&back), [&state.joints, &joints]);
+            let hits = self.rewind_hits(&placer, &layer.motion, [&state.joints, &joints]);
             let chain = placer.solver().chain();
             let turn = self.trellis.measure.off_part(chain, &state.joints, &joints);
             self.rewound.push(state.joints);

@@ -132,6 +132,7 @@ impl Route<'_> {
         }
         let placer = &self.settings[layers[0].setting].1;
         let mut anew = Trellis::close_to_poles(self.machine, placer, pole);
+        anew.axes.both_ways = self.judge.weighs;
         let begun = usize::from(self.anchored);
         anew.layers.extend(layers[..begun].iter().cloned());
         anew.states.extend(&self.trellis.states[..begun]);

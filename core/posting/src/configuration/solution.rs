@@ -28,6 +28,8 @@ pub(crate) struct ChoiceAxes {
     /// Axes among them whose full turns are nothing to the machine, one bit each: they have no travel, and no side of
     /// zero counts.
     pub(super) endless: u8,
+    /// Off the part axes without travel may be turned the longer way round as well.
+    pub(super) both_ways: bool,
     linear: Vec<RotaryTravel>,
     /// What must hold between the axes.
     limits: Vec<DependentLimit>,
@@ -144,6 +146,7 @@ impl ChoiceAxes {
         Self {
             turning,
             endless: endless & !sided,
+            both_ways: false,
             linear,
             limits: machine.limits.clone(),
             indexed,

@@ -1,11 +1,12 @@
-//! `[clearance] choose`: the cut that hits something with one solution is made with the other, and is said to be.
+//! What chooses minds bodies: the cut that hits something with one solution is made with the other, and is said to be;
+//! mounts where something hits are not offered.
 
 use std::fs;
 
 use post_testkit::assert_contains;
 use tempfile::TempDir;
 
-use crate::common::post_in;
+use crate::common::{post_in, root, sample};
 
 /// A table with a round plate, a tool setter that stands in front of it, and a tool.
 const MACHINE: &str = "extends = \"ac-trunnion\"
@@ -108,4 +109,62 @@ fn where_every_solution_hits_that_is_said() {
     let (_, said, hits) = made(&folder, &CHOOSE);
     assert!(hits.is_some());
     assert_contains(&said, &["no solution was found with which plate stays clear of"]);
+}
+
+/// An arm on the table that reaches into what stands in front of it with one solution, at one end of the cut, and into what
+/// stands beside it with the other, at the other end: the tool is drawn back between them.
+#[test]
+fn a_cut_that_hits_with_either_solution_is_divided() {
+    let machine = MACHINE.replace(
+        "cylinder = [[0, 0, 0], [0, 0, 20]]\nradius = 140",
+        "block = [[-30, -140, 0], [30, 0, 20]]",
+    );
+    let beside = "[rewind]\ndistance = 100\n[fixture.beside]\nblock = [[138, -60, -60], [200, 60, 90]]\non = \"b\"\n";
+    let lean = 20f64.to_radians();
+    let at = |turn: f64, out: f64| {
+        let (sine, cosine) = (turn.to_radians().sin(), turn.to_radians().cos());
+        let axis = [-lean.sin() * sine, -lean.sin() * cosine, lean.cos()];
+        let tip = [-20.0 * sine, -20.0 * cosine, 52.0];
+        let [x, y, z] = [0, 1, 2].map(|place: usize| tip[place] + out * axis[place]);
+        format!("GOTO/{x:.4},{y:.4},{z:.4},{:.7},{:.7},{:.7}\n", axis[0], axis[1], axis[2])
+    };
+    let mut moves = format!("RAPID\n{}RAPID\n{}FEDRAT/MMPM,800\n", at(0.0, 60.0), at(0.0, 0.0));
+    (1..=90).for_each(|turn| moves.push_str(&at(f64::from(turn), 0.0)));
+    moves.push_str(&format!("RAPID\n{}", at(90.0, 60.0)));
+    let folder = job(&format!("{machine}{beside}"), &moves);
+    let (_, _, hits) = made(&folder, &[]);
+    assert!(hits.is_some());
+    let (program, said, hits) = made(&folder, &CHOOSE);
+    assert_eq!(hits, None, "{program}{said}");
+}
+
+/// `--clearance` chooses and proves.
+#[test]
+fn a_program_that_is_to_be_clear_is_chosen_so() {
+    let folder = job(MACHINE, &facet(20.0, -1.0));
+    let (program, said, hits) = made(&folder, &["--clearance"]);
+    assert_eq!(hits, None);
+    assert_contains(&program, &["G0 A-20.000 C180.000"]);
+    assert_contains(&said, &["others are taken"]);
+}
+
+#[test]
+fn a_mount_where_something_hits_is_not_offered() {
+    let post = "[fixture.post]\ncylinder = [[60, 0, 0], [60, 0, 100]]\nradius = 10\n";
+    let bare = MACHINE.find("[fixture.plate]").unwrap()..MACHINE.find("[tools.3]").unwrap();
+    let mut machine = MACHINE.to_owned();
+    machine.replace_range(bare, post);
+    let folder = job(&machine, "");
+    let blade = root().join(sample("blade.cls"));
+    let blade = blade.to_str().unwrap();
+    let words = ["-m", "setter.toml", blade, "-o", "blade.nc", "-q", "--clearance"];
+    let here = post_in(folder.path(), &words);
+    assert_eq!(here.code, 1);
+    assert_contains(&here.err, &["post", "holder T3"]);
+    let found = post_in(folder.path(), &["place", blade, "-m", "setter.toml", "--runs", "40"]);
+    assert_eq!(found.code, 0, "{}", found.err);
+    assert_contains(&found.out, &["it is not proven that nothing hits anything", "clearance  "]);
+    let mount = found.out.lines().last().unwrap().split(' ').next_back().unwrap();
+    let there = post_in(folder.path(), &[&words[..], &["--mount", mount]].concat());
+    assert_eq!(there.code, 0, "{}", there.err);
 }

@@ -104,10 +104,11 @@ impl<'a> ChoiceBodies<'a> {
             ends: [from, to],
             independent,
         };
-        // Where the tip goes in the part is the same whatever solution is taken.
+        // Where the tip goes in the part is the same whatever solution is taken, but for ways that the CL file does not have.
+        let off_part = way.kind == TrialWayKind::Turn;
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
-            !(kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock))
+            off_part || !(kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock))
         };
         let track = self.track(&ends[0]);
         track.stands = ends[1];

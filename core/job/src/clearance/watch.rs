@@ -399,9 +399,7 @@ fn told(machine: &Machine, row: &PairRow, fault: &Fault) -> String {
             "that {one} stays clear of {other} is not proven: how the axes go on the way is not known"
         ),
     };
-    let stands = machine.axes.iter().zip(&fault.joints);
-    let stands = stands.map(|(axis, value)| format!("{} {:.3}", axis.name, axis.reading(*value)));
-    message.push_str(&format!(" at {}", stands.collect::<Vec<_>>().join(" ")));
+    message.push_str(&format!(" at {}", machine.shown(&fault.joints)));
     if fault.at_most.is_finite() {
         let [x, y, z] = fault.point.into();
         message.push_str(&format!(", on {one} at [{x:.3}, {y:.3}, {z:.3}]"));

@@ -520,6 +520,13 @@ impl Machine {
         self.given_travel.get(joint).copied().unwrap_or(self.axes[joint].travel)
     }
 
+    /// Axis values as the control shows them, `X 12.000 A -30.000`; mm and degrees.
+    pub fn shown(&self, joints: &Joints) -> String {
+        let stands = self.axes.iter().zip(joints);
+        let stands = stands.map(|(axis, at)| format!("{} {:.3}", axis.name, axis.reading(*at)));
+        stands.collect::<Vec<_>>().join(" ")
+    }
+
     /// The words of a program hold for a part on `mount` alone: they are axis positions, and a rotary axis carries the
     /// part.
     pub fn holds_on_mount_alone(&self) -> bool {

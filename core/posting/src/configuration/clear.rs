@@ -33,7 +33,7 @@ pub enum TrialWayKind {
     Cut,
     /// At rapid, the tip straight.
     Rapid,
-    /// At rapid, as far as each axis goes: the rotary ones while the tool is retracted.
+    /// At rapid, as far as each axis goes, off the part: the rotary ones while the tool is retracted.
     Turn,
 }
 
@@ -156,8 +156,8 @@ impl BodyTrial<'_> {
         };
         let (solver, kind) = (placer.solver(), TrialWayKind::Rapid);
         let ways = [[ends[0], &away], [&away, &turned], [&turned, ends[1]]];
-        let mut contact = |ends| self.bodies.contact(&TrialWay { solver, ends, kind });
-        ways.into_iter().filter_map(|ends| contact(ends)).collect()
+        let contact = |ends| self.bodies.contact(&TrialWay { solver, ends, kind });
+        ways.into_iter().filter_map(contact).collect()
     }
 
     /// What the way from `from` to the retract hits.
@@ -245,6 +245,8 @@ impl<'a> Route<'a> {
             let rebuilt = self.rebuild(pole);
             self.judge.weighs = false;
             if !rebuilt {
+                // What is eased does not come through.
+                ends = self.walk_back(way).unwrap_or(ends);
                 break;
             }
             self.weigh_departures();
@@ -323,19 +325,12 @@ impl Trellis {
     }
 }
 
-/// The place of the axes, as the control shows them.
-fn shown(machine: &Machine, joints: &Joints) -> String {
-    let stands = machine.axes.iter().zip(joints);
-    let stands = stands.map(|(axis, value)| format!("{} {:.3}", axis.name, axis.reading(*value)));
-    stands.collect::<Vec<_>>().join(" ")
-}
-
 /// The cheapest solutions would hit something, and others were found.
 fn chosen_clear(machine: &Machine, contact: &Contact) -> Diagnostic {
     let [one, other] = &contact.bodies;
     let message = format!(
         "with the cheapest solutions {one} would not stay clear of {other} (at {}): others are taken",
-        shown(machine, &contact.joints)
+        machine.shown(&contact.joints)
     );
     Diagnostic::warning("clearance", message)
         .help("[clearance] choose has it so; another fixture or mount may be quicker")
@@ -346,7 +341,7 @@ fn hits_however(machine: &Machine, contact: &Contact) -> Diagnostic {
     let [one, other] = &contact.bodies;
     let message = format!(
         "no solution was found with which {one} stays clear of {other} (at {})",
-        shown(machine, &contact.joints)
+        machine.shown(&contact.joints)
     );
     Diagnostic::warning("clearance", message)
         .help("another mount, fixture, tool or path; `post clearance` proves the program")

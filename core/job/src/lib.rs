@@ -7,7 +7,7 @@ mod blocks_ahead;
 pub mod calibrate;
 pub mod caller;
 pub mod cancellable_text;
-mod cl_facts;
+pub mod cl_facts;
 pub mod clearance;
 mod columns;
 pub mod commission_program;

@@ -67,13 +67,12 @@ impl Mounted {
         (!strays).then(|| ends.each_ref().map(|joints| self.pose(joints)))
     }
 
-    /// No point of it is farther from where it is at the middle of a piece, mm, anywhere on the piece.
-    fn reach(&self, piece: &Piece) -> f64 {
-        let middle = &piece.middle;
+    /// No point of it is farther from where it is at the `middle` of a piece, mm, anywhere on the piece.
+    fn reach(&self, middle: &Joints, piece: &Piece) -> f64 {
         let by_levers = || self.view.reach_by_levers(middle, &self.view.levers(middle), piece);
         match piece.independent {
             true => by_levers(),
-            false => self.view.reach(middle, self.view.centre(middle), piece).min(by_levers()),
+            false => self.view.reach(middle, piece).min(by_levers()),
         }
     }
 }
@@ -98,17 +97,21 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
     let mut count = 0;
     while let Some(piece) = waiting.pop() {
         count += 1;
-        let reach = tool.reach(&piece);
+        let Some(at) = way.middle(&piece) else {
+            lost = true;
+            continue;
+        };
+        let reach = tool.reach(&at, &piece);
         let fine = reach <= step;
         let halves = match fine || count > MOST_STEPS {
             true => None,
-            false => piece.halves(way, tool.view.widest(&piece).map_or(0, |(axis, _)| axis)),
+            false => piece.halves(way, &at, tool.view.widest(&piece).map_or(0, |(axis, _)| axis)),
         };
         if let Some([first, last]) = halves {
             waiting.extend([last, first]);
             continue;
         }
-        let middle = pose(&piece.middle);
+        let middle = pose(&at);
         if straight.is_none() {
             removed += field.remove(cutter, &middle);
         }
@@ -163,7 +166,6 @@ pub struct Watched {
 #[derive(Clone, Copy, Debug)]
 struct Known {
     joints: Joints,
-    centre: Vector3<f64>,
     levers: Joints,
     at_least: f64,
 }
@@ -208,14 +210,19 @@ impl Watched {
                 continue;
             }
             computed += 1;
+            let Some(joints) = way.middle(&piece) else {
+                let [joints, _] = piece.ends;
+                let point = Vector3::zeros();
+                return self.refuse(Place { joints, at_most: f64::INFINITY, point });
+            };
             self.distances += 1;
-            let at = self.mounted.placement(&piece.middle);
+            let at = self.mounted.placement(&joints);
             let placed: Vec<Convex> = self.pieces.iter().map(|piece| piece.placed(&at)).collect();
             let apart = field.apart(&placed);
             self.nearest = self.nearest.min(apart.at_most);
-            let place = Place { joints: piece.middle, at_most: apart.at_most, point: apart.point };
+            let place = Place { joints, at_most: apart.at_most, point: apart.point };
             if apart.at_most < keep {
-                let pose = self.mounted.pose(&piece.middle);
+                let pose = self.mounted.pose(&joints);
                 // Whether axes that go for themselves come by there hangs on how fast each of them is.
                 let common = (!piece.independent).then(|| field.common(&self.profile, &pose));
                 return match common.flatten() {
@@ -227,21 +234,17 @@ impl Watched {
                 };
             }
             let view = &self.mounted.view;
-            self.known = Some(Known {
-                joints: piece.middle,
-                centre: view.centre(&piece.middle),
-                levers: view.levers(&piece.middle),
-                at_least: apart.at_least,
-            });
+            self.known =
+                Some(Known { joints, levers: view.levers(&joints), at_least: apart.at_least });
             if let Some(left) = self.left(&piece, keep, within) {
                 clear_by = clear_by.min(left);
                 continue;
             }
-            let reach = self.mounted.reach(&piece);
+            let reach = self.mounted.reach(&joints, &piece);
             let widest = view.widest(&piece).map_or(0, |(axis, _)| axis);
             let halves = match reach <= within || computed > MOST_PIECES {
                 true => None,
-                false => piece.halves(way, widest),
+                false => piece.halves(way, &joints, widest),
             };
             match halves {
                 Some([first, last]) => waiting.extend([last, first]),
@@ -266,7 +269,7 @@ impl Watched {
         let least = keep.max(CLOSE * self.nearest - within);
         let mut reach = view.reach_by_levers(&known.joints, &known.levers, piece);
         if known.at_least - reach < least && !piece.independent {
-            reach = reach.min(view.reach(&known.joints, known.centre, piece));
+            reach = reach.min(view.reach(&known.joints, piece));
         }
         let left = known.at_least - reach;
         (left >= least).then_some(left)

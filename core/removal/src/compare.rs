@@ -33,13 +33,20 @@ pub struct Compared {
     pub thickest: Farthest,
 }
 
+/// The surface of a mesh, corners in mm: its triangles alone, so that what is inside is as far from it as from them. None
+/// where no triangle has an area.
+pub fn surface_of(triangles: &[[Vector3<f64>; 3]]) -> Option<Shape> {
+    let kept = triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a);
+    Shape::new(kept.copied().map(Convex::triangle).collect())
+}
+
 /// One of the two, as it is certainly and as it may be.
 #[derive(Clone, Copy)]
 struct Solid<'a>(&'a Field);
 
 impl Field {
-    /// What is left against a part, of which `part` is a field of the same size and resolution and `surface` the shape of its
-    /// mesh, all in the frame of the field.
+    /// What is left against a part, of which `part` is a field of the same size and resolution and `surface` that of its
+    /// mesh ([`surface_of`]), all in the frame of the field.
     pub fn compare(&self, part: &Self, surface: &Shape) -> Compared {
         let (left, part) = (Solid(self), Solid(part));
         let [gouge, rest] = [part.without(left), left.without(part)];
@@ -111,7 +118,7 @@ impl Solid<'_> {
                         continue;
                     }
                     let at = Placement { shift: point, ..Placement::identity() };
-                    let apart = of_shapes(surface, &dot, &at, guess);
+                    let apart = of_shapes(surface, &dot, &at, guess, f64::INFINITY);
                     guess = apart.nearest;
                     last = Some((point, apart.at_most));
                     farthest.at_most = farthest.at_most.max(apart.at_most + around);

@@ -11,7 +11,7 @@ use post_machine::kinematics::Joint;
 use post_readback::{Motion, SpindleState};
 use post_removal::along::{self, Found, Mounted, Place, Watched};
 use post_removal::been::Been;
-use post_removal::compare::Compared;
+use post_removal::compare::{Compared, surface_of};
 use post_removal::field::{Cutter, Field, Volume};
 use post_removal::mesh::Triangle;
 use post_removal::profile::{ToolPose, between};
@@ -186,7 +186,7 @@ impl CutStock {
         let part = cut.part.as_ref().and_then(|file| {
             let triangles = closed_mesh(file, (&given.place, "the part"), findings)?;
             let triangles = shifted(triangles, low);
-            let surface = Shape::mesh(&triangles)?;
+            let surface = surface_of(&triangles)?;
             Some((Field::mesh(size, &triangles, resolution), surface))
         });
         let frame = Placement { rotation: turn, shift: turn * low + machine.mount };

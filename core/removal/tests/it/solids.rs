@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector3;
 use post_clearance::convex::Convex;
 use post_clearance::distance::of_convex;
-use post_clearance::shape::Shape;
+use post_removal::compare::surface_of;
 use post_removal::field::{Cutter, Field};
 use post_removal::profile::ToolPose;
 use post_testkit::{Rng, randomised};
@@ -161,7 +161,7 @@ fn what_is_cut_into_and_what_is_left_lie_between_their_bounds() {
     // A square of 12.7 mm, on the bottom, 8 mm high: a prism of four sides.
     let triangles = prism(V::new(10.0, 10.0, 0.0), [9.0; 2], 8.0, 4);
     let volume = 2.0 * 81.0 * 8.0;
-    let surface = Shape::mesh(&triangles).unwrap();
+    let surface = surface_of(&triangles).unwrap();
     for resolution in [0.8, 0.4] {
         let part = Field::mesh(size, &triangles, resolution);
         let mut field = Field::block(size, resolution);

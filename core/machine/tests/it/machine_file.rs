@@ -146,7 +146,7 @@ const SLIPS: &[Slip] = &[
     (
         "rotary = [0, 0, 1]",
         "rotary = \"Z\"",
-        "20 \"Z\"",
+        "19 \"Z\"",
         "expected three numbers, such as [1, 0, 0] for X",
         false,
     ),

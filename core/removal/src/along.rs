@@ -13,13 +13,13 @@ use crate::field::{Cutter, Field, Volume};
 use crate::profile::ToolPose;
 
 /// Pieces of a way that a body is looked at on; what is not proven then is not.
-const MOST_PIECES: u64 = 1 << 11;
+const MOST_PIECES: u64 = 1 << 13;
 
 /// Pieces of a cut; of what is longer nothing is known any more for certain.
 const MOST_STEPS: u64 = 1 << 17;
 
-/// The nearest approach is known to this share of it.
-const CLOSE: f64 = 0.8;
+/// The nearest approach is known to this share of it: on a line, and in a box that axes span which go for themselves.
+const CLOSE: [f64; 2] = [0.8, 0.5];
 
 /// A body of revolution on the last link of a machine, and a field on its first.
 #[derive(Clone, Debug)]
@@ -266,7 +266,8 @@ impl Watched {
     fn left(&self, piece: &Piece, keep: f64, within: f64) -> Option<f64> {
         let known = self.known.as_ref()?;
         let view = &self.mounted.view;
-        let least = keep.max(CLOSE * self.nearest - within);
+        let close = CLOSE[usize::from(piece.independent)];
+        let least = keep.max(close * self.nearest - within);
         let mut reach = view.reach_by_levers(&known.joints, &known.levers, piece);
         if known.at_least - reach < least && !piece.independent {
             reach = reach.min(view.reach(&known.joints, piece));

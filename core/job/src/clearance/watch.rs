@@ -185,7 +185,10 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         if self.stock.as_mut().is_some_and(|stock| stock.motion(&against)) {
             let message = "a cutter is fed into the stock while the spindle stands: nothing is cut";
             let help = "start the spindle before the cut: M3 or M4";
-            self.faults.push((motion.line, message.to_owned(), help));
+            // Once: all that follows is the same.
+            if self.faults.iter().all(|fault| fault.1 != message) {
+                self.faults.push((motion.line, message.to_owned(), help));
+            }
         }
     }
 

@@ -122,11 +122,12 @@ pub fn unit_length(units: OutputUnits) -> f64 {
     }
 }
 
-/// Where the axes stand when the tip of a solver's tool is on the part origin and every rotary axis shows zero; `rotary`
-/// has the places of the rotary axes in the chain, and what each shows where the drawing has it at zero.
-fn work_zero(solver: &Solver, rotary: impl Iterator<Item = (usize, f64)>) -> Option<Joints> {
+/// Where the axes stand when the tip of a solver's tool is on the part origin and every axis that does not bring it there
+/// shows zero: rotary ones, and linear ones that move off the part alone. `axes` has the places of all axes in the chain, and
+/// what each shows where the drawing has it at zero.
+fn work_zero(solver: &Solver, axes: impl Iterator<Item = (usize, f64)>) -> Option<Joints> {
     let mut zero = [0.0; MAX_AXES];
-    for (joint, reading) in rotary {
+    for (joint, reading) in axes {
         zero[joint] = -reading;
     }
     let turns = solver.chain().turns(&zero);
@@ -138,8 +139,8 @@ fn work_zero(solver: &Solver, rotary: impl Iterator<Item = (usize, f64)>) -> Opt
 /// on the part origin and every rotary axis shows zero. None where the linear axes cannot bring it there.
 pub fn work_offset(machine: &Machine) -> Option<Vec<(&str, f64)>> {
     let solver = machine.solver_at(0.0, &[0.0; MAX_AXES]).ok()?;
-    let rotary = machine.axes.iter().enumerate().filter(|(_, axis)| axis.joint.rotary);
-    let zero = work_zero(&solver, rotary.map(|(joint, axis)| (joint, axis.zero)))?;
+    let axes = machine.axes.iter().enumerate();
+    let zero = work_zero(&solver, axes.map(|(joint, axis)| (joint, axis.zero)))?;
     let shown = |joint: usize| {
         let shown = zero[joint] + machine.axes[joint].zero;
         (machine.axes[joint].name.as_str(), shown * own_factor(machine, joint))
@@ -210,9 +211,10 @@ impl AxisWords {
     }
 
     /// Takes the work offset from a solver: where the axes stand when the tip of its tool is on the part
-    /// origin and every rotary axis at zero. None if the linear axes cannot bring it there.
+    /// origin and every other axis shows zero. None if the linear axes cannot bring it there.
     pub fn set_zero(&mut self, solver: &Solver) -> Option<()> {
-        self.zero = work_zero(solver, self.rotary.iter().map(|word| (word.joint, word.reading)))?;
+        let words = self.rotary.iter().chain(&self.linear);
+        self.zero = work_zero(solver, words.map(|word| (word.joint, word.reading)))?;
         Some(())
     }
 

@@ -235,3 +235,33 @@ fn a_range_switches_the_shorter_way_on() {
     assert!(made.text.contains("M126"), "{}", &made.text[..200]);
     assert!(!made.text.contains("M127"), "{}", &made.text[..200]);
 }
+
+/// A rail that stands at 5 by what the control shows, 10 more by the drawing: its word is 5, and X counts from where it shows
+/// zero, so that X goes 5 back for it.
+#[test]
+fn the_word_of_an_axis_that_stands_is_what_the_control_shows_of_it() {
+    let machine = r#"name = "rail"
+chain = "[w b U X Y Z (S) t]"
+[tool]
+gauge = [0, 0, 300]
+axis = [0, 0, 1]
+[axis]
+U = { linear = [1, 0, 0], travel = [-100, 100], indexed = 5, zero = -10 }
+X = { linear = [1, 0, 0], travel = [-200, 200] }
+Y = { linear = [0, 1, 0], travel = [-200, 200] }
+Z = { linear = [0, 0, 1], travel = [-500, 0] }
+[control]
+dialect = "linuxcnc"
+"#;
+    let folder = common::with_file("rail.toml", machine);
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/500,MMPM\nGOTO/0,0,0\nGOTO/20,0,0\nFINI\n";
+    std::fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let words = ["-m", "rail.toml", "part.cls", "-o", "-", "-q", "--tool-length", "100"];
+    let done = common::post_in(folder.path(), &words);
+    assert_eq!(done.code, 0, "{}", done.err);
+    post_testkit::assert_contains(&done.out, &["X-5.000", "X15.000", "U5.000"]);
+    let words = ["verify", "part.nc", "-m", "rail.toml", "--against", "part.cls", "--tool-length", "100"];
+    std::fs::write(folder.path().join("part.nc"), &done.out).unwrap();
+    let read = common::post_in(folder.path(), &words);
+    assert_eq!(read.code, 0, "{}{}", read.out, read.err);
+}

@@ -8,6 +8,9 @@ use super::*;
 /// Of the tip from the B axis, mm.
 const ARM: f64 = 320.0;
 
+/// By how much a limit holds at Z and B, but for a number.
+type Margin = Box<dyn Fn([f64; 2]) -> f64>;
+
 /// What rounding of words may take a limit beyond its end.
 const SLACK: f64 = 2e-3;
 
@@ -56,7 +59,7 @@ fn a_program_is_made_just_inside_a_limit_and_refused_just_outside() {
     for round in rounds {
         let tcp = if round % 2 == 0 { "post" } else { "control" };
         let steep = rng.range(0.5, 6.0);
-        let (term, margin): (String, Box<dyn Fn([f64; 2]) -> f64>) = match round % 3 {
+        let (term, margin): (String, Margin) = match round % 3 {
             0 => (format!("{steep} * abs(B)"), Box::new(move |[z, b]| z - steep * b.abs())),
             1 => (
                 format!("{steep} * 100 * (1 - cos(B))"),

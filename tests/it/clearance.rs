@@ -147,6 +147,38 @@ fn a_tool_is_as_long_as_it_is_whatever_register_leads_it() {
     }
 }
 
+/// What a control makes of the program besides its words is proven, or said not to be.
+#[test]
+fn where_the_control_goes_beside_the_path_nothing_is_clear() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "extends = \"vmc\"\nname = \"v\"\n[workpiece]\nmount = [0, 0, -100]\n\
+        [fixture.wall]\nblock = [[40, 8, -130], [80, 40, -85]]\n\
+        [tools.1]\nlength = 100\ncutter = [[0, 5], [60, 5]]\n";
+    fs::write(folder.path().join("v.toml"), machine).unwrap();
+    fs::write(folder.path().join("zero.toml"), "[radius]\n1 = 0\n").unwrap();
+    fs::write(folder.path().join("five.toml"), "[radius]\n1 = 5\n").unwrap();
+    let compensated = "G1 Z-20. F500.\nG41 D1 G1 X20.\nX100.\nG40 X120.\n";
+    for (blocks, offsets, said) in [
+        ("G1 Z-20. F500.\nX100.\n", None, None),
+        (compensated, Some("zero.toml"), None),
+        (compensated, Some("five.toml"), Some("goes beside this path by 5 mm")),
+        (compensated, None, Some("by what register 1 holds")),
+        ("G98 G76 X60. Y0. Z-20. R2. Q10. F100.\nG80\n", None, Some("draws the tool aside")),
+        ("G1 Z-20. F500.\n/G0 Z50.\nG0 X0. Y-60.\n", None, Some("blocks behind / are run here")),
+    ] {
+        let program = format!(
+            "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z0.\nG53 G0 X0. Y0.\nT1 M6\nS1000 M3\nG54\nG0 X0. Y-10.\nG43 H1 Z50.\n\
+             {blocks}G0 Z80.\nG49\nG53 G0 Z0.\nM30\n%\n"
+        );
+        fs::write(folder.path().join("p.nc"), program).unwrap();
+        let mut words = vec!["clearance", "p.nc", "-m", "v.toml"];
+        words.extend(offsets.iter().flat_map(|offsets| ["--offsets", *offsets]));
+        let run = post_in(folder.path(), &words);
+        assert_eq!(run.code, i32::from(said.is_some()), "{blocks}: {}", run.err);
+        said.iter().for_each(|said| assert_contains(&run.err, &[*said]));
+    }
+}
+
 /// What is as fast as a rapid is one where rapids stand at feed, but where the CL file cuts as fast.
 #[test]
 fn a_cut_as_fast_as_the_axes_is_one_by_the_cl_file() {

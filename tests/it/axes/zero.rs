@@ -260,7 +260,8 @@ dialect = "linuxcnc"
     let done = common::post_in(folder.path(), &words);
     assert_eq!(done.code, 0, "{}", done.err);
     post_testkit::assert_contains(&done.out, &["X-5.000", "X15.000", "U5.000"]);
-    let words = ["verify", "part.nc", "-m", "rail.toml", "--against", "part.cls", "--tool-length", "100"];
+    let words =
+        ["verify", "part.nc", "-m", "rail.toml", "--against", "part.cls", "--tool-length", "100"];
     std::fs::write(folder.path().join("part.nc"), &done.out).unwrap();
     let read = common::post_in(folder.path(), &words);
     assert_eq!(read.code, 0, "{}{}", read.out, read.err);

@@ -121,6 +121,14 @@ pub fn prove(
     if run.faults().len() == MOST_FAULTS {
         findings.push(nc_program::given_up());
     }
+    let notes = &run.program().program().report().notes;
+    let skipped = notes.iter().filter(|note| note.code == "nc-skip");
+    findings.extend(skipped.map(|note| {
+        let message = "blocks behind / are run here; with the switch on the machine leaves them out, and of that nothing is proven";
+        Diagnostic::error("clearance", message)
+            .at(note.place.clone())
+            .help("take the / away where the block is wanted, or the block where it is not")
+    }));
     findings.append(&mut found.findings);
     found.findings = findings;
     found.lacks.splice(0..0, without_body(machine));

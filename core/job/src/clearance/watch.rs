@@ -6,7 +6,9 @@ use post_clearance::piece::Way;
 use post_clearance::proof::{Body, BodyKind, Fault, Move, Proof, Verdict};
 use post_machine::description::{Machine, RapidAxes};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
-use post_readback::{BlockEffect, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState};
+use post_readback::{
+    BlockEffect, CycleKind, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState,
+};
 
 use super::been::Been;
 use super::bodies::{ToolShape, of_tool};
@@ -60,6 +62,8 @@ pub(super) struct ClearanceWatch<'a, 'h> {
     turns_part: bool,
     /// The tool of which it was said that another length leads it.
     misled: Option<u32>,
+    /// The radius register of which it was said that the control goes beside the path by it.
+    beside: Option<Option<u32>>,
     rows: BTreeMap<[String; 2], PairRow>,
     /// Who hears how near the nearest two bodies come on each line, mm, and how that is found.
     told: Option<(&'a mut Hearer<'h>, Proof)>,
@@ -100,6 +104,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             start: Start::default(),
             turns_part: false,
             misled: None,
+            beside: None,
             rows: BTreeMap::new(),
             found,
             undrawn: Vec::new(),
@@ -124,8 +129,43 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 self.proof.forget();
                 self.stock.iter_mut().for_each(CutStock::forget);
             }
+            BlockEffect::Event { line, event: ProgramEvent::Cycle(call) }
+                if matches!(call.kind, CycleKind::BoreFine | CycleKind::BoreBack) =>
+            {
+                let message = "a cycle that draws the tool aside in the hole: to which side, and how far, is the control's: nothing is proven of it";
+                let help = "bore it by a cycle that draws the tool out as it stands, or by moves";
+                self.faults.push((*line, message.to_owned(), help));
+            }
             BlockEffect::Event { .. } | BlockEffect::State(_) => {}
         }
+    }
+
+    /// Says once where the control goes beside the path of the program by a radius.
+    fn hold_beside(&mut self, motion: &Motion) {
+        let state = &motion.state;
+        let register = state.radius_register;
+        if state.compensation == 0 || self.beside == Some(register) {
+            return;
+        }
+        let radii = self.control.offsets.radii.iter();
+        let radius = register.and_then(|register| {
+            let mut own = radii.filter(|(known, _)| *known == register);
+            own.next().map(|(_, radius)| *radius)
+        });
+        if radius == Some(0.0) {
+            return;
+        }
+        self.beside = Some(register);
+        let by = match (radius, register) {
+            (Some(radius), _) => format!("by {} mm", number_text(radius, 3)),
+            (None, Some(register)) => format!("by what register {register} holds"),
+            (None, None) => "by the tool's radius".to_owned(),
+        };
+        let message = format!(
+            "radius compensation: the control goes beside this path {by}, and nothing is proven of that"
+        );
+        let help = "of the path of the tool's centre --offsets says [radius] 1 = 0 of the register; or post without CUTCOM";
+        self.faults.push((motion.line, message, help));
     }
 
     fn motion(&mut self, motion: &Motion) {
@@ -137,6 +177,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             self.faults.push((motion.line, message, "programs that turn are looked at by eye; mill what turns with a machine file of its own"));
         }
         self.hold_lengths(motion);
+        self.hold_beside(motion);
         let at_rapid = motion.kind == MotionKind::Rapid;
         // As fast as a rapid may be a cut that an axis holds up: it is, if the CL file cuts as fast.
         let rapid = at_rapid || motion.fast && motion.feed > self.cuts.fastest + FEED_PLACE;

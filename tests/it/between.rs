@@ -52,7 +52,7 @@ fn the_tool_is_retracted_between_operations_on_two_sides() {
         let retract = second.find("Z-100.000 R0 FMAX M91").unwrap();
         assert!(retract < turn, "{tcp}: {text}");
         // What runs stays on: it is the same tool.
-        assert!(!second[..turn].contains("M5") && !second[..turn].contains("M9"), "{text}");
+        assert!(!second[..turn].contains("M5\n") && !second[..turn].contains("M9\n"), "{text}");
         // No farther apart than faces are: the way of the CAM system.
         let near = SIDES.replace("GOTO/0,-100,10,0,-1,0", "GOTO/0,-100,10,0,-0.5,0.8660254");
         let (run, text) = posted(&near, &job);
@@ -92,7 +92,7 @@ fn an_operation_is_told_its_tool_and_its_feed() {
     let machine = folder.path().join("own.toml");
     fs::write(
         &machine,
-        "extends = \"ac-trunnion\"\n[program]\nbefore_operation = \"(OP {{operation.number}} T{{tool.number}} F{{operation.feed|round}})\"\n",
+        "extends = \"ac-trunnion\"\n[program]\nbefore_operation = \"(OP {{operation.number}} T{{tool.number}} F{{operation.feed|fixed(1)}})\"\n",
     )
     .unwrap();
     let machine = machine.to_str().unwrap();

@@ -142,7 +142,8 @@ impl TextPlace {
             work_offset: (!begins).then_some(1),
             compensation: (!begins)
                 .then(|| CompensationFacts { side: "left".to_owned(), register: 1 }),
-            plane: (!begins).then(PlaneFacts::default),
+            plane: (!begins)
+                .then(|| PlaneFacts { angles: Some([0.0; 3]), ..PlaneFacts::default() }),
             rotary: turned.then(|| rotary.iter().map(|name| (name.clone(), 0.0)).collect()),
             tolerance: smooth.then_some(0.01),
             axis_tolerance: smooth.then_some(0.05),

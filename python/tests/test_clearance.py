@@ -106,7 +106,8 @@ class Judge:
     def __init__(self, rng: np.random.Generator, made: World, count: Counter) -> None:
         self.made, self.count = made, count
         self.motions = list(motions(made.machine, made.text, made.lengths))
-        found = [samples(rng, motion) for motion in self.motions]
+        # Where the machine stands before the first block leads it nobody says: of that block the end alone is looked at.
+        found = [samples(rng, motion) if place else motion.at(SHARES[-1:]) for place, motion in enumerate(self.motions)]
         self.ends = np.cumsum([0] + [len(rows) for rows in found])
         self.q = np.vstack(found)
         self.all = bodies(made.machine) + tool_bodies(made.machine, 1, made.length)

@@ -52,7 +52,7 @@ pub struct Body {
 }
 
 /// What is to be kept.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
     /// Distance at feed, mm.
     pub keep: f64,
@@ -183,6 +183,17 @@ impl Proof {
             pair.rules = of(one, other);
         }
         self
+    }
+
+    /// What the first pair of bodies of these kinds keeps; none where there is none.
+    pub fn rules(&self, kinds: [BodyKind; 2]) -> Option<Rules> {
+        let [one, other] = kinds;
+        let mut pairs = self.pairs.iter();
+        let pair = pairs.find(|pair| {
+            let own = pair.result.bodies.map(|place| self.bodies[place].kind);
+            own == [one, other] || own == [other, one]
+        })?;
+        Some(pair.rules.unwrap_or(self.rules))
     }
 
     /// The bodies.

@@ -113,4 +113,6 @@ pub struct Standstill {
     pub spindle: Option<u64>,
     /// A coolant flowed.
     pub coolant: Option<u64>,
+    /// A tool was changed, whether the spindle turned or not: most controls stop it for that.
+    pub change: Option<u64>,
 }

@@ -197,7 +197,9 @@ class Reader:
         held, _ = machine.place(0, first)
         axis = held[0].T @ rotation[0] @ machine.tool_axis
         out = float(way @ axis)
-        straight = out >= 0 and float(np.linalg.norm(way - axis * out)) <= 1.01e-3
+        # As far aside as three linear words at both ends and two rotary ones are rounded, by half of their last digit.
+        lean = 6 * 0.5e-3 + 2 * math.radians(0.5e-3) * abs(out)
+        straight = out >= 0 and float(np.linalg.norm(way - axis * out)) <= 1.01 * lean
         withdraws = straight and not (turns or curved or boxed)
         ends = np.vstack([first, end])
         return Motion(line, mode == 0, self.tool, ends, at, boxed, keeps, turns, curved, withdraws)

@@ -121,6 +121,8 @@ struct Part {
     /// Place of its pair with the stock.
     row: usize,
     watched: Watched,
+    /// What it keeps from the stock at feed and at rapid, mm.
+    keep: [f64; 2],
     /// All of it, as what may remove where it touches.
     body: Cutter,
     mounted: Mounted,
@@ -140,8 +142,6 @@ pub(super) struct Against<'a> {
     pub ways: &'a [Way<'a>],
     /// At rapid traverse.
     pub rapid: bool,
-    /// What a holder keeps, mm.
-    pub keep: f64,
 }
 
 impl CutStock {
@@ -211,12 +211,6 @@ impl CutStock {
 
     fn cutting(&mut self, machine: &Machine, tool: &ToolShape<'_>, proof: &Proof) -> CuttingTool {
         let ToolShape { number, length, outline, .. } = *tool;
-        let counts = |kind: BodyKind| {
-            proof.results().any(|result| {
-                let kinds = result.bodies.map(|place| proof.bodies()[place].kind);
-                kinds.contains(&BodyKind::Stock) && kinds.contains(&kind)
-            })
-        };
         let up = machine.tool_axis;
         let at_tip = ToolPose { tip: machine.gauge - up * length, axis: up };
         let at_gauge = ToolPose { tip: machine.gauge, axis: -up };
@@ -233,12 +227,14 @@ impl CutStock {
         let mut parts = Vec::new();
         for (kind, what, counted, at_zero, profile) in bodies {
             let shape = Shape::turned(&profile, at_zero.tip, at_zero.axis);
-            let (true, Some(shape)) = (counts(counted), shape) else { continue };
+            let rules = proof.rules([BodyKind::Stock, counted]);
+            let (Some(rules), Some(shape)) = (rules, shape) else { continue };
+            let keep = if kind == PartKind::Holder { [rules.keep, rules.rapid] } else { [0.0; 2] };
             let mounted = Mounted::new(&self.axes, self.frame, at_zero, shape.sphere());
             let row = self.row(format!("{what} T{number}"));
             let body = Cutter::vague(&profile);
             let watched = Watched::new(mounted.clone(), profile);
-            parts.push(Part { kind, row, watched, body, mounted });
+            parts.push(Part { kind, row, watched, keep, body, mounted });
         }
         let cutter = Shape::turned(&edges, at_tip.tip, up).map(|shape| {
             let mounted = Mounted::new(&self.axes, self.frame, at_tip, shape.sphere());
@@ -281,8 +277,9 @@ impl CutStock {
             }
             return false;
         };
-        let spins =
-            matches!(spindle, SpindleState::Clockwise(_) | SpindleState::CounterClockwise(_));
+        let standstill = &against.motion.state.standstill;
+        let spins = standstill.spindle.or(standstill.change).is_none()
+            && matches!(*spindle, SpindleState::Clockwise(speed) | SpindleState::CounterClockwise(speed) if speed > 0.0);
         let cuts = !against.rapid && spins;
         let mut clear = true;
         for way in against.ways {
@@ -345,7 +342,7 @@ impl CutStock {
 
     /// Holds a part of the tool against what is left on a way; whether it stays clear.
     fn holds(&mut self, part: &mut Part, against: &Against<'_>, way: &Way<'_>) -> bool {
-        let keep = if part.kind == PartKind::Holder { against.keep } else { 0.0 };
+        let keep = part.keep[usize::from(against.rapid)];
         let (nearest, distances) = (part.watched.nearest(), part.watched.distances());
         let found = part.watched.along(&mut self.field, way, keep, WITHIN);
         self.distances += part.watched.distances() - distances;

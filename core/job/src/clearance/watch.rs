@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use post_clearance::piece::Way;
 use post_clearance::proof::{Body, BodyKind, Fault, Move, Proof, Verdict};
+use post_machine::check::number as decimals;
 use post_machine::description::{Machine, RapidAxes};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use post_readback::{
@@ -16,7 +17,6 @@ use super::left::{Against, CutStock};
 use super::start::{Known, Start};
 use super::{ClearanceFound, Cuts, proof};
 use crate::nc_program::NcControl;
-use crate::text::number as number_text;
 
 /// Half of the last place of a feed without decimals, mm/min.
 const FEED_PLACE: f64 = 0.5;
@@ -157,7 +157,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
         self.beside = Some(register);
         let by = match (radius, register) {
-            (Some(radius), _) => format!("by {} mm", number_text(radius, 3)),
+            (Some(radius), _) => format!("by {} mm", decimals(radius, 3)),
             (None, Some(register)) => format!("by what register {register} holds"),
             (None, None) => "by the tool's radius".to_owned(),
         };
@@ -220,12 +220,10 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             self.proof.take(&Move { way, rapid, line: motion.line }, looks);
             ways.push(way);
         }
-        let rules = &self.control.machine.clearance;
-        let keep = if rapid { rules.rapid } else { rules.keep };
-        let against = Against { motion, ways: &ways, rapid, keep };
+        let against = Against { motion, ways: &ways, rapid };
         if self.stock.as_mut().is_some_and(|stock| stock.motion(&against)) {
-            let message = "a cutter is fed into the stock while the spindle stands: nothing is cut";
-            let help = "start the spindle before the cut: M3 or M4";
+            let message = "a cutter is fed into the stock while the spindle stands, or may stand: nothing is cut for certain";
+            let help = "start the spindle before the cut, behind the tool change and any stop: S and M3 or M4";
             // Once: all that follows is the same.
             if self.faults.iter().all(|fault| fault.1 != message) {
                 self.faults.push((motion.line, message.to_owned(), help));
@@ -245,8 +243,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             self.misled = Some(number);
             let message = format!(
                 "tool {number} is {} mm long, and the length in force is {} mm: the control leads another tool",
-                number_text(length, 3),
-                number_text(stated, 3)
+                decimals(length, 3),
+                decimals(stated, 3)
             );
             let help =
                 "call the length register of this tool (H, D), or correct [tools] and --offsets";

@@ -104,7 +104,8 @@ impl ControlState {
             SpindleRequest::Off => SpindleState::Off,
             SpindleRequest::Oriented => SpindleState::Oriented,
         };
-        if self.state.standstill.spindle.take().is_some() {
+        let standstill = &mut self.state.standstill;
+        if standstill.spindle.take().is_some() | standstill.change.take().is_some() {
             self.state_changed();
         }
         if self.state.spindle != spindle {

@@ -40,6 +40,7 @@ impl ControlState {
         self.begins();
         self.state.tool = number;
         self.tools.longer = 0.0;
+        self.state.standstill.change = Some(self.line);
         self.state_changed();
         self.tell(ProgramEvent::ToolChange { number, name });
         if self.tools.by_tool && self.tools.length_on {

@@ -32,7 +32,7 @@ rapid_axes = \"together\"
 
 /// A facet that leans by `lean` degrees to the side of Y that `sign` has.
 fn facet(lean: f64, sign: f64) -> String {
-    let (sine, cosine) = (lean.to_radians().sin() * sign, lean.to_radians().cos());
+    let (sine, cosine) = (libm::sin(lean.to_radians()) * sign, libm::cos(lean.to_radians()));
     let at = |x: f64, out: f64| {
         let (y, z) = (20.0 * sign + out * sine, 52.0 + out * cosine);
         format!("GOTO/{x:.4},{y:.4},{z:.4},0,{sine:.7},{cosine:.7}\n")
@@ -122,8 +122,8 @@ fn a_cut_that_hits_with_either_solution_is_divided() {
     let beside = "[rewind]\ndistance = 100\n[fixture.beside]\nblock = [[138, -60, -60], [200, 60, 90]]\non = \"b\"\n";
     let lean = 20f64.to_radians();
     let at = |turn: f64, out: f64| {
-        let (sine, cosine) = (turn.to_radians().sin(), turn.to_radians().cos());
-        let axis = [-lean.sin() * sine, -lean.sin() * cosine, lean.cos()];
+        let (sine, cosine) = libm::sincos(turn.to_radians());
+        let axis = [-libm::sin(lean) * sine, -libm::sin(lean) * cosine, libm::cos(lean)];
         let tip = [-20.0 * sine, -20.0 * cosine, 52.0];
         let [x, y, z] = [0, 1, 2].map(|place: usize| tip[place] + out * axis[place]);
         format!("GOTO/{x:.4},{y:.4},{z:.4},{:.7},{:.7},{:.7}\n", axis[0], axis[1], axis[2])

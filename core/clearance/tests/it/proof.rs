@@ -175,7 +175,7 @@ fn no_motion_of_axes_comes_nearer_than_is_proven() {
         let Some(solver) = solver(&machine) else { continue };
         let rules = Rules { keep: rng.order(-2.0, 1.3), rapid: 0.0, within: 0.01 };
         let size = rng.range(20.0, 200.0);
-        let mut bodies = bodies(&mut rng, &machine, size, rules.clone());
+        let mut bodies = bodies(&mut rng, &machine, size, rules);
         let mut sampled = f64::INFINITY;
         let mut from = machine.values(&mut rng);
         // Motions in a row: what is known of the first holds on.
@@ -215,7 +215,7 @@ fn axes_that_arrive_when_they_like_stay_as_far_apart_as_is_proven() {
         let Some(solver) = solver(&machine) else { continue };
         let rules = Rules { keep: 0.0, rapid: rng.order(-2.0, 1.3), within: 0.05 };
         let size = rng.range(20.0, 150.0);
-        let mut bodies = bodies(&mut rng, &machine, size, rules.clone());
+        let mut bodies = bodies(&mut rng, &machine, size, rules);
         let from = machine.values(&mut rng);
         let mut to = machine.values(&mut rng);
         let share = rng.order(-3.0, 0.0);
@@ -246,7 +246,7 @@ fn a_tip_that_the_control_keeps_is_proven_by_where_the_axes_go() {
         let Some(solver) = solver(&machine) else { continue };
         let rules = Rules { keep: rng.order(-2.0, 1.3), rapid: 0.0, within: 0.01 };
         let size = rng.range(20.0, 200.0);
-        let mut bodies = bodies(&mut rng, &machine, size, rules.clone());
+        let mut bodies = bodies(&mut rng, &machine, size, rules);
         let from = machine.values(&mut rng);
         let mut to = machine.values(&mut rng);
         let share = rng.order(-3.0, -0.5);

@@ -86,8 +86,9 @@ pub fn read(
 }
 
 /// What the columns hold.
-fn columns(machine: &Machine, heads: &[String]) -> Result<Vec<Column>, Diagnostic> {
-    let fault = |message: String, help: String| Diagnostic::error("calibrate", message).help(help);
+fn columns(machine: &Machine, heads: &[String]) -> Result<Vec<Column>, Box<Diagnostic>> {
+    let fault =
+        |message: String, help: String| Diagnostic::error("calibrate", message).help(help).boxed();
     let names = machine.axes.iter().map(|axis| axis.name.as_str());
     let known: Vec<&str> = names.clone().chain(["ball", "length", "dX", "dY", "dZ"]).collect();
     let mut columns = Vec::new();

@@ -121,6 +121,10 @@ pub fn prove(
     if run.faults().len() == MOST_FAULTS {
         findings.push(nc_program::given_up());
     }
+    if found.motions == 0 && run.faults().is_empty() {
+        let message = format!("{name} moves nothing, and nothing is proven of it");
+        findings.push(Diagnostic::warning("clearance", message).help("is the file whole?"));
+    }
     let notes = &run.program().program().report().notes;
     let skipped = notes.iter().filter(|note| note.code == "nc-skip");
     findings.extend(skipped.map(|note| {

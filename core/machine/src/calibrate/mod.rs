@@ -22,6 +22,15 @@ const SMALL_SHARE: f64 = 0.1;
 /// Steps after which no better numbers are looked for.
 const MOST_STEPS: usize = 50;
 
+/// By how much readings are off their ball with values of the unknowns.
+type OffBalls<'o, E> = dyn FnMut(&[f64]) -> Result<DVector<f64>, E> + 'o;
+
+/// Values of the unknowns, and by how much readings are off their ball with them.
+struct Trial {
+    values: Vec<f64>,
+    off: DVector<f64>,
+}
+
 /// One finding of a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BallReading {
@@ -110,12 +119,12 @@ pub fn calibrate<E>(
     let mut derivatives = differences(&values, &steps, &mut errors)?;
     for _ in 0..MOST_STEPS {
         let step = determined_step(unknowns, &derivatives, &left)?;
-        let Some((next, less)) = shorter(&values, &step, &left, &mut errors)? else {
+        let Some(next) = shorter(&values, &step, &left, &mut errors)? else {
             break;
         };
-        let gained = left.norm_squared() - less.norm_squared();
+        let gained = left.norm_squared() - next.off.norm_squared();
         let done = gained <= 1e-12 * left.norm_squared();
-        (values, left) = (next, less);
+        (values, left) = (next.values, next.off);
         derivatives = differences(&values, &steps, &mut errors)?;
         if done {
             break;
@@ -194,7 +203,7 @@ fn off_their_ball(machine: &Machine, readings: &[BallReading], balls: usize) -> 
 fn differences<E>(
     values: &[f64],
     steps: &[f64],
-    errors: &mut dyn FnMut(&[f64]) -> Result<DVector<f64>, E>,
+    errors: &mut OffBalls<'_, E>,
 ) -> Result<DMatrix<f64>, E> {
     let mut columns = Vec::with_capacity(values.len());
     for (index, step) in steps.iter().enumerate() {
@@ -258,15 +267,15 @@ fn shorter<E>(
     values: &[f64],
     step: &DVector<f64>,
     errors: &DVector<f64>,
-    of: &mut dyn FnMut(&[f64]) -> Result<DVector<f64>, E>,
-) -> Result<Option<(Vec<f64>, DVector<f64>)>, E> {
+    of: &mut OffBalls<'_, E>,
+) -> Result<Option<Trial>, E> {
     let mut share = 1.0;
     for _ in 0..10 {
         let next: Vec<f64> =
             values.iter().zip(step.iter()).map(|(value, step)| value + share * step).collect();
         let less = of(&next)?;
         if less.norm_squared() < errors.norm_squared() {
-            return Ok(Some((next, less)));
+            return Ok(Some(Trial { values: next, off: less }));
         }
         share /= 4.0;
     }

@@ -233,6 +233,8 @@ class Job:
         self.tools = sorted({int(tool) for tool in re.findall(r"\bT(\d+) M6", self.text)})
         self.away = {fixture: 0.0 for fixture in FIXTURES}
         self.low, self.high, self.gauge = np.zeros(3), np.zeros(3), np.zeros(3)
+        # The line from which on it is known where the machine stands.
+        self.known = 0
         machine = self.describe({})
         tips = [machine.tip_in_part(m.at(SHARES), self.LENGTH) for m in self.course(machine, {}) if not m.rapid]
         self.low, self.high = np.vstack(tips).min(axis=0), np.vstack(tips).max(axis=0)
@@ -247,6 +249,7 @@ class Job:
             for fixture in names:
                 self.away[fixture] += 12
         assert proven.clear, proven.said
+        self.known = max(map(int, re.findall(r"the way to line (\d+) is not looked at", proven.said)), default=0)
 
     def describe(self, plant: dict[str, float]) -> Machine:
         """Writes the machine file: of ``plant`` how far the holder is longer, a tool shorter, a fixture nearer, mm."""
@@ -277,7 +280,8 @@ class Job:
         return self.LENGTH - plant.get("tool", 0.0)
 
     def course(self, machine: Machine, plant: dict[str, float]) -> list[Motion]:
-        return list(motions(machine, self.text, {tool: self.length(plant) for tool in self.tools}))
+        all_motions = motions(machine, self.text, {tool: self.length(plant) for tool in self.tools})
+        return [motion for motion in all_motions if motion.line > self.known]
 
     def nearest(self, plant: dict[str, float], share: float) -> tuple[float, tuple[str, ...]]:
         """How near what is planted comes to anything at samples, or a ``share`` less, and which pair that is."""

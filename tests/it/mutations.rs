@@ -527,6 +527,14 @@ fn mutate(kind: &str, random: &mut Rng, lines: &mut Vec<String>, length: &mut f6
                     places.extend(found.map(|from| (at, from..from + word.len())));
                 }
             }
+            // A plane that another one takes the place of need not be ended before, but at the head.
+            let replaced = |at: usize| {
+                let mut planes = lines[at + 1..].iter().filter(|line| line.contains("PLANE "));
+                let opened = lines[..at].iter().any(|line| line.contains("PLANE SPATIAL"));
+                opened && planes.next().is_some_and(|line| line.contains("PLANE SPATIAL"))
+            };
+            places
+                .retain(|(at, word)| !lines[*at][word.clone()].contains("PLANE") || !replaced(*at));
             let (at, word) = places.get(random.pick(places.len().max(1)))?.clone();
             lines[at].replace_range(word, "");
             Some(())

@@ -57,35 +57,45 @@ pub fn program_number(finder: &Finder, machine: &Machine) -> Option<i64> {
 
 /// An option of the dialect that is a whole number, as the machine file has it or as it is by default.
 pub fn integer(finder: &Finder, machine: &Machine, key: &str) -> Option<i64> {
-    let plugin = finder.find(&machine.control.dialect).ok()?;
-    let declared = plugin.options().iter().find(|spec| spec.key == key)?;
-    match (given_value(machine, key), declared.default) {
-        (Some(OptionValue::Integer(number)), _) => Some(*number),
-        (None, Value::Integer(number)) => Some(number),
+    option(finder, machine, key, |value| match value {
+        Value::Integer(number) => Some(number),
         _ => None,
-    }
+    })
 }
 
 /// An option of the dialect that is yes or no, likewise.
 pub fn flag(finder: &Finder, machine: &Machine, key: &str) -> Option<bool> {
-    let plugin = finder.find(&machine.control.dialect).ok()?;
-    let declared = plugin.options().iter().find(|spec| spec.key == key)?;
-    match (given_value(machine, key), declared.default) {
-        (Some(OptionValue::Flag(flag)), _) => Some(*flag),
-        (None, Value::Flag(flag)) => Some(flag),
+    option(finder, machine, key, |value| match value {
+        Value::Flag(flag) => Some(flag),
         _ => None,
-    }
+    })
 }
 
 /// An option of the dialect that is text, likewise.
 pub fn text(finder: &Finder, machine: &Machine, key: &str) -> Option<String> {
+    option(finder, machine, key, |value| match value {
+        Value::Text(text) => Some(text.to_owned()),
+        _ => None,
+    })
+}
+
+/// What `take` makes of an option of the dialect.
+fn option<T>(
+    finder: &Finder,
+    machine: &Machine,
+    key: &str,
+    take: impl FnOnce(Value<'_>) -> Option<T>,
+) -> Option<T> {
     let plugin = finder.find(&machine.control.dialect).ok()?;
     let declared = plugin.options().iter().find(|spec| spec.key == key)?;
-    match (given_value(machine, key), declared.default) {
-        (Some(OptionValue::Text(text)), _) => Some(text.clone()),
-        (None, Value::Text(text)) => Some(text.to_owned()),
-        _ => None,
-    }
+    let mut given = machine.control.options.iter();
+    take(match given.find(|given| given.key == key).map(|given| &given.value) {
+        Some(OptionValue::Flag(flag)) => Value::Flag(*flag),
+        Some(OptionValue::Integer(number)) => Value::Integer(*number),
+        Some(OptionValue::Number(number)) => Value::Number(*number),
+        Some(OptionValue::Text(text)) => Value::Text(text),
+        None => declared.default,
+    })
 }
 
 /// What programs of a machine rely on at its control, a sentence each, as its dialect tells it.
@@ -104,11 +114,6 @@ pub fn work_offset(finder: &Finder, machine: &Machine) -> Option<String> {
         Some(row) => (row >= 0).then(|| format!("CYCL DEF 247 Q339={row}")),
         None => text(finder, machine, "work_offset").filter(|word| !word.is_empty()),
     }
-}
-
-fn given_value<'m>(machine: &'m Machine, key: &str) -> Option<&'m OptionValue> {
-    let mut given = machine.control.options.iter();
-    given.find(|given| given.key == key).map(|given| &given.value)
 }
 
 /// Opens the dialect of a machine for the program `program`, made from the CL file `cl_file`.

@@ -17,7 +17,7 @@ use post_removal::mesh::Triangle;
 use post_removal::profile::{ToolPose, between};
 
 use super::bodies::{ToolShape, closed_mesh, unusable};
-use super::watch::PairRow;
+use super::pair_row::PairRow;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg, Role};
 use crate::session::Session;
@@ -250,8 +250,7 @@ impl CutStock {
         if let Some(place) = self.rows.iter().position(|row| row.names == names) {
             return place;
         }
-        let (clear_by, nearest) = (f64::INFINITY, (f64::INFINITY, 0));
-        self.rows.push(PairRow { names, clear_by, nearest, faults: 0, fault: None });
+        self.rows.push(PairRow::new(names));
         self.rows.len() - 1
     }
 

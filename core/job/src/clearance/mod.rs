@@ -6,6 +6,7 @@ mod choice;
 mod left;
 mod names;
 mod of_job;
+mod pair_row;
 mod start;
 mod summary;
 pub mod text;
@@ -33,9 +34,10 @@ use watch::ClearanceWatch;
 pub(crate) use choice::ChoiceBodies;
 pub use left::StockLeft;
 pub use of_job::of_job;
+pub use pair_row::PairRow;
 pub use post_removal::compare::Farthest;
 pub use summary::{ClearanceSummary, PairSummary};
-pub use watch::{Hearer, PairRow};
+pub use watch::Hearer;
 
 /// A program that is to be proven.
 #[derive(Clone, Debug)]

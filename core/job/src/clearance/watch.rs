@@ -14,6 +14,7 @@ use post_readback::{
 use super::been::Been;
 use super::bodies::{ToolShape, of_tool};
 use super::left::{Against, CutStock};
+use super::pair_row::PairRow;
 use super::start::{Known, Start};
 use super::{ClearanceFound, Cuts, proof};
 use crate::nc_program::NcControl;
@@ -23,21 +24,6 @@ const FEED_PLACE: f64 = 0.5;
 
 /// A length in force may differ by so much from that of the tool, mm: wear, and what a measurement leaves.
 const WEAR: f64 = 0.5;
-
-/// What is known of a pair of bodies along the program.
-#[derive(Clone, Debug)]
-pub struct PairRow {
-    /// Their names.
-    pub names: [String; 2],
-    /// They are never nearer, mm, on motions that are proven to be clear; infinite where there is none.
-    pub clear_by: f64,
-    /// The nearest that was found, mm, and the line.
-    pub nearest: (f64, u64),
-    /// Motions on which they are not clear.
-    pub faults: u64,
-    /// The first place where they are not, or the first that hits.
-    pub fault: Option<Fault>,
-}
 
 /// Hears of motions: the line, and how near any two bodies come on it, mm.
 pub type Hearer<'h> = dyn FnMut(u64, f64) + 'h;
@@ -213,14 +199,14 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         {
             hear(motion.line, distance);
         }
-        let mut ways = vec![way];
-        if way.independent && motion.turns() && motion.way != Interpolation::Axes {
-            // Where the control keeps the tip it may do so at rapid as well: the axes go another way then.
-            let way = Way { independent: false, ..way };
-            self.proof.take(&Move { way, rapid, line: motion.line }, looks);
-            ways.push(way);
+        // Where the control keeps the tip it may do so at rapid as well: the axes go another way then.
+        let together = Way { independent: false, ..way };
+        let twice = way.independent && motion.turns() && motion.way != Interpolation::Axes;
+        if twice {
+            self.proof.take(&Move { way: together, rapid, line: motion.line }, looks);
         }
-        let against = Against { motion, ways: &ways, rapid };
+        let ways = &[way, together][..1 + usize::from(twice)];
+        let against = Against { motion, ways, rapid };
         if self.stock.as_mut().is_some_and(|stock| stock.motion(&against)) {
             let message = "a cutter is fed into the stock while the spindle stands, or may stand: nothing is cut for certain";
             let help = "start the spindle before the cut, behind the tool change and any stop: S and M3 or M4";
@@ -338,13 +324,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         self.found.distances += self.proof.distances();
         for result in self.proof.results() {
             let names = result.bodies.map(|place| self.proof.bodies()[place].name.clone());
-            let row = self.rows.entry(names.clone()).or_insert(PairRow {
-                names,
-                clear_by: f64::INFINITY,
-                nearest: (f64::INFINITY, 0),
-                faults: 0,
-                fault: None,
-            });
+            let row = self.rows.entry(names.clone()).or_insert_with(|| PairRow::new(names));
             row.clear_by = row.clear_by.min(result.clear_by);
             if result.nearest.0 < row.nearest.0 {
                 row.nearest = result.nearest;

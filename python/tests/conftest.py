@@ -2,13 +2,28 @@
 
 import os
 import subprocess
+import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 CHECKOUT = Path(__file__).parents[2]
 COMMAND = os.environ.get("POST_COMMAND", str(CHECKOUT / "target/debug/post"))
+
+
+def rounds(count: int) -> int:
+    """A third of them, or POST_ROUNDS times as many."""
+    times = os.environ.get("POST_ROUNDS")
+    return count * int(times) if times else (count + 2) // 3
+
+
+def drawn(own: int) -> np.random.Generator:
+    """The numbers of a test's own seed and of that of the run."""
+    seed = int(os.environ.get("POST_SEED", time.time_ns() % 2**31))
+    print(f"random numbers of seed {own}; again with POST_SEED={seed}")
+    return np.random.default_rng([own, seed])
 
 
 def built(library: str) -> Path:

@@ -7,17 +7,15 @@ again, and ``POST_ROUNDS=N`` takes 3N times as many.
 import csv
 import io
 import math
-import os
 import re
 import subprocess
-import time
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import CHECKOUT, COMMAND
+from conftest import CHECKOUT, COMMAND, drawn, rounds
 
 pytest.importorskip("fcl", reason="python-fcl is not installed: post clearance is held against no other library")
 pytest.importorskip("tomllib", reason="Python 3.11 reads machine files")
@@ -34,19 +32,6 @@ ROUNDING = 0.0005 + 1e-6
 """What the table's last digit leaves, mm."""
 WITHIN = 0.01
 """What the proof cannot tell apart, mm."""
-
-
-def rounds(count: int) -> int:
-    """A third of them, or POST_ROUNDS times as many."""
-    times = os.environ.get("POST_ROUNDS")
-    return count * int(times) if times else (count + 2) // 3
-
-
-def drawn(own: int) -> np.random.Generator:
-    """The numbers of a test's own seed and of that of the run."""
-    seed = int(os.environ.get("POST_SEED", time.time_ns() % 2**31))
-    print(f"random numbers of seed {own}; again with POST_SEED={seed}")
-    return np.random.default_rng([own, seed])
 
 
 class Proven:

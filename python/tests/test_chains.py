@@ -1,0 +1,331 @@
+"""Random machines, their words and limits, posted; what is written is read back by kinematics that post knows nothing
+of (``oracle``), and held against the CL file.
+
+Numbers are drawn anew each time: ``POST_SEED=N`` draws those of an earlier run again, ``POST_ROUNDS=N`` takes 40N
+machines.
+"""
+
+import json
+import math
+import re
+import subprocess
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import COMMAND, drawn, rounds
+
+pytest.importorskip("tomllib", reason="Python 3.11 reads machine files")
+
+from oracle.machine import Machine  # noqa: E402
+from oracle.program import Motion, Reader  # noqa: E402
+from oracle.worlds import Maker, numbers  # noqa: E402
+
+SHARES = np.linspace(0, 1, 9)
+TOLERANCE, LEAN = 0.005, 0.05
+"""What the machine file allows, mm and degrees."""
+DIGIT = 0.5e-3
+"""Half of the last digit of a word, mm or degrees."""
+
+Floats = np.ndarray
+
+
+@dataclass
+class Words:
+    """Words of the program as multiples of slides and sums of rotary axes: ``matrix`` @ what axes show."""
+
+    letters: list[str]
+    matrix: Floats
+
+    def said(self) -> list[str]:
+        """The tables of the machine file; words that are the axis itself need none."""
+        lines = []
+        for letter, row in zip(self.letters, self.matrix):
+            if np.array_equal(row, np.eye(len(row))[self.letters.index(letter)]):
+                continue
+            terms = [f"{factor:+.4f} * {name}" for name, factor in zip(self.letters, row) if factor]
+            lines += [f"[word.{letter}]", f'is = "{" ".join(terms).removeprefix("+")}"']
+        return lines
+
+
+class WordReader(Reader):
+    """A reader of programs whose words are ``Words``."""
+
+    def __init__(self, machine: Machine, lengths: dict[int, float], words: Words) -> None:
+        super().__init__(machine, lengths)
+        self.words, self.back = words, np.linalg.inv(words.matrix)
+        # A slide that is not quite along the tool takes the tip aside by its length: the program is for this tool.
+        slides = [machine.axes[slide] for slide in machine.slides()]
+        directions = np.stack([slide.direction for slide in slides], axis=1)
+        values = np.linalg.solve(directions, machine.mount - machine.tip(lengths[1]))
+        self.zero |= {slide.name: float(slide.shown(value)) for slide, value in zip(slides, values)}
+        self.zero[self.along] -= lengths[1]
+
+    def move(
+        self, line: int, axes: dict[str, float], mode: int, others: dict[str, float], machine_words: bool
+    ) -> Motion | None:
+        letters, matrix = self.words.letters, self.words.matrix
+        slides = [letter for letter in letters if letter in "XYZ"]
+        told = {
+            letter: value / matrix[letters.index(letter), letters.index(letter)]
+            for letter, value in axes.items()
+            if letter in slides
+        }
+        if set(axes) - set(slides):
+            shown = np.array([0.0 if letter in slides else self.shown[letter] for letter in letters])
+            spoken = matrix @ shown
+            for letter in set(axes) - set(slides):
+                spoken[letters.index(letter)] = axes[letter]
+            for letter, value in zip(letters, self.back @ spoken):
+                if letter not in slides:
+                    told[letter] = float(value)
+        return super().move(line, told, mode, others, machine_words)
+
+
+@dataclass
+class Limit:
+    """``slide`` stays on one side of a value that depends on ``turned``."""
+
+    slide: str
+    turned: str
+    level: float
+    slope: float
+    above: bool
+
+    def said(self) -> list[str]:
+        sign = ">" if self.above else "<"
+        return ["[[limit]]", f'keep = "{self.slide} {sign} {self.level} {self.slope:+} * abs({self.turned})"']
+
+    def passed(self, machine: Machine, q: Floats) -> float:
+        """By how much, at the worst of poses."""
+        names = [axis.name for axis in machine.axes]
+        slide, turned = (
+            machine.axes[names.index(name)].shown(q[:, names.index(name)]) for name in (self.slide, self.turned)
+        )
+        room = slide - (self.level + self.slope * np.abs(turned))
+        return float(np.max(-room if self.above else room))
+
+
+@dataclass
+class Case:
+    """A machine, a CL file's cuts (tips and tool axes in the frame of the part) and what the machine says of words and
+    limits."""
+
+    folder: Path
+    machine: Machine
+    words: Words
+    limits: list[Limit]
+    travel: dict[str, tuple[float, float]]
+    passes: list[tuple[Floats, Floats]]
+    length: float
+
+
+def paths(rng: np.random.Generator, machine: Machine, length: float, travel: dict) -> list[tuple[Floats, Floats]]:
+    """Cuts that the machine can make: what its own axes do on smooth ways."""
+    found = []
+    for _ in range(3):
+        count = int(rng.integers(4, 16))
+        share = np.linspace(0, 1, count)[:, None]
+        tips = rng.uniform(-60, 60, 3) + rng.uniform(5, 40, 3) * np.sin(rng.uniform(0.5, 3, 3) * share * 2)
+        q = np.zeros((count, len(machine.axes)))
+        for place, axis in enumerate(machine.axes):
+            if axis.rotary:
+                # A tool that leans far is not led away from the part by Z.
+                most = 170.0 if axis.carries_part else 85.0
+                low, high = (max(-most, travel[axis.name][0]), min(most, travel[axis.name][1]))
+                middle, way = rng.uniform(low, high), rng.uniform(0, 0.25) * (high - low)
+                turned = middle + way * np.sin(rng.uniform(0.5, 2) * share[:, 0] * 2)
+                q[:, place] = axis.value(np.clip(turned, low, high))
+        led, _ = machine.place(len(machine.axes), q)
+        held, _ = machine.place(0, q)
+        axes = np.einsum("nji,nj->ni", held, led @ machine.tool_axis)
+        found.append((tips.round(6), axes.round(9)))
+    return found
+
+
+def write_cl(path: Path, passes: list[tuple[Floats, Floats]]) -> None:
+    """A CL file: above each cut at rapid, along it at feed, and away."""
+    lines = ["PARTNO/CHAINS", "UNITS/MM", "LOADTL/1", "SPINDL/5000,CLW"]
+
+    def goto(tip: Floats, axis: Floats) -> str:
+        return "GOTO/" + ",".join(f"{value:.9f}" for value in [*tip, *axis])
+
+    for tips, axes in passes:
+        lines += ["RAPID", goto(tips[0] + 20 * axes[0], axes[0]), "FEDRAT/800,MMPM"]
+        lines += [goto(tip, axis) for tip, axis in zip(tips, axes)]
+        lines += ["RAPID", goto(tips[-1] + 20 * axes[-1], axes[-1])]
+    path.write_text("\n".join([*lines, "SPINDL/OFF", "FINI", ""]))
+
+
+def case(rng: np.random.Generator, folder: Path) -> Case:
+    """A machine with random words and limits in ``folder``, and a CL file for it."""
+    maker = Maker(rng, folder)
+    maker.register = 1
+    maker.chain()
+    text = "\n".join(maker.lines)
+    letters = re.findall(r"\[axis\.(.)\]", text)
+    travel = {letter: (-100000.0, 100000.0) for letter in letters}
+    for letter in letters:
+        if letter in "ABC" and maker.chance(0.5):
+            travel[letter] = (-round(float(rng.uniform(40, 360)), 1), round(float(rng.uniform(40, 360)), 1))
+            text = re.sub(rf"(\[axis\.{letter}\](?:\n.+)*?\ntravel = ).*", rf"\g<1>{list(travel[letter])}", text)
+        elif letter in "ABC":
+            travel[letter] = (-400.0, 400.0)
+    matrix = np.eye(len(letters))
+    turned = [letter for letter in letters if letter in "ABC"]
+    for letter in letters:
+        # The control's length of the tool goes along Z, and its words of a tip are no words of axes.
+        if letter in "XY" and not maker.tcp and maker.chance(0.4):
+            matrix[letters.index(letter), letters.index(letter)] = maker.pick([2, 0.5, 2.5])
+        if letter in turned and maker.chance(0.3):
+            matrix[letters.index(letter), letters.index(letter)] = maker.pick([1, 2, 0.5])
+            for other in turned:
+                if other != letter and other < letter:
+                    matrix[letters.index(letter), letters.index(other)] = maker.pick([1, -1, 0.5, 0.25])
+    words = Words(letters, matrix)
+    limits = []
+    if turned and maker.chance(0.5):
+        # Z goes to the end of its travel after each cut.
+        slide = str(maker.pick(list("XYZ")))
+        above = slide == "Z" or maker.chance(0.5)
+        reach = float(rng.uniform(200, 1500)) * (-1 if above else 1)
+        slope = round(float(rng.uniform(0.2, 3)), 2) * (1 if above else -1)
+        limits.append(Limit(slide, str(maker.pick(turned)), round(reach, 1), slope, above))
+    lines = [text, *words.said(), *(line for limit in limits for line in limit.said())]
+    lines += ["[clearance]", 'rapid_axes = "together"', "[tools.1]", f"length = {maker.length}", ""]
+    (folder / "m.toml").write_text("\n".join(lines))
+    machine = Machine.read(folder / "m.toml", folder)
+    passes = paths(rng, machine, maker.length, travel)
+    write_cl(folder / "p.cls", passes)
+    return Case(folder, machine, words, limits, travel, passes, maker.length)
+
+
+def poses(machine: Machine, q: Floats, length: float) -> tuple[Floats, Floats]:
+    """Tips and tool axes in the frame of the part."""
+    led, _ = machine.place(len(machine.axes), q)
+    held, _ = machine.place(0, q)
+    return machine.tip_in_part(q, length), np.einsum("nji,nj->ni", held, led @ machine.tool_axis)
+
+
+def angle(one: Floats, other: Floats) -> Floats:
+    """Between unit vectors, degrees."""
+    return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(one - other, axis=-1) / 2, 0, 1)))
+
+
+def slack(found: Case, q: Floats, led: bool) -> tuple[float, float]:
+    """What the digits of all words can do to tip and tool axis, mm and degrees."""
+    machine, back = found.machine, np.abs(np.linalg.inv(found.words.matrix))
+    tip, axis = poses(machine, q, found.length)
+    off, leant = (math.sqrt(3) * DIGIT if led else 0.0), 0.0
+    for place, one in enumerate(machine.axes):
+        step = 1e-4
+        turned = q.copy()
+        turned[:, place] += step
+        tip2, axis2 = poses(machine, turned, found.length)
+        share = DIGIT * float(back[found.words.letters.index(one.name)].sum())
+        share = (math.radians(share) if one.rotary else share) / step
+        off += 0.0 if led else float(np.linalg.norm(tip2 - tip, axis=1).max()) * share
+        leant += float(angle(axis2, axis).max()) * share
+    return off + 2e-6, leant + 2e-6
+
+
+def wrongs(found: Case, text: str) -> Iterator[str]:
+    """What of a program is not as the CL file and the machine have it."""
+    reader = WordReader(found.machine, {1: found.length}, found.words)
+    motions = [(motion, motion.at(SHARES)) for motion in reader.motions(text)]
+    for motion, q in motions:
+        for place, axis in enumerate(found.machine.axes):
+            low, high = found.travel[axis.name]
+            shown = axis.shown(q[:, place])
+            # The way to the first place begins where nobody has said.
+            if motion is not motions[0][0] and (shown.min() < low - 2e-3 or shown.max() > high + 2e-3):
+                yield f"{motion.line}: {axis.name} at {shown.min():.3f} to {shown.max():.3f}, travel {low} to {high}"
+        for limit in found.limits:
+            if limit.passed(found.machine, q[-1:]) > 0.01 or (
+                not motion.rapid and limit.passed(found.machine, q) > 0.01
+            ):
+                yield f"{motion.line}: a limit is passed by {limit.passed(found.machine, q):.3f}"
+    cuts = [(motion, q, *poses(found.machine, q, found.length)) for motion, q in motions if not motion.rapid]
+    at = 0
+    for tips, axes in found.passes:
+        for place, (goal, lean) in enumerate(zip(tips, axes)):
+            for number in range(at, len(cuts)):
+                motion, q, tip, axis = cuts[number]
+                off, leant = slack(found, q[-1:], motion.keeps_tip)
+                # Beside a pole the tool may lean as far as the file allows.
+                if np.linalg.norm(tip[-1] - goal) <= off + 1e-4 and angle(axis[-1], lean) <= LEAN + leant:
+                    break
+            else:
+                yield f"point {place} of a cut at {goal} is not met behind line {cuts[at][0].line if cuts else 0}"
+                return
+            # Between the points before and this one, the ways there.
+            for motion, q, tip, axis in cuts[at : number + 1] if place else []:
+                off, leant = slack(found, q[-1:], motion.keeps_tip)
+                start, way = tips[place - 1], goal - tips[place - 1]
+                share = np.clip((tip - start) @ way / max(float(way @ way), 1e-12), 0, 1)
+                aside = np.linalg.norm(tip - start - share[:, None] * way, axis=1).max()
+                if aside > TOLERANCE + off:
+                    yield f"{motion.line}: the tip strays by {aside:.4f}, {TOLERANCE + off:.4f} are allowed"
+                normal = np.cross(axes[place - 1], lean)
+                size = float(np.linalg.norm(normal))
+                if size > 1e-4:
+                    tilt = np.degrees(np.arcsin(np.clip(np.abs(axis @ normal) / size, 0, 1))).max()
+                    if tilt > LEAN + leant:
+                        yield f"{motion.line}: the tool leaves its plane by {tilt:.4f} degrees"
+            at = number + 1
+
+
+def posted(found: Case) -> tuple[str | None, str]:
+    """The program, if there is one, and what is said."""
+    words = [COMMAND, "-m", "m.toml", "p.cls", "-o", "p.nc"]
+    run = subprocess.run(words, cwd=found.folder, capture_output=True, text=True)
+    assert run.returncode in (0, 1), run.stderr
+    return (found.folder / "p.nc").read_text() if run.returncode == 0 else None, run.stderr
+
+
+def spoilt(rng: np.random.Generator, text: str) -> str:
+    """The program with one word of a cut put off by 0.05 mm or 0.2 degrees."""
+    lines = text.splitlines()
+    cutting, places = False, []
+    for number, line in enumerate(lines):
+        codes = re.findall(r"G0*(\d+)(?![\d.])", line)
+        cutting = "1" in codes or (cutting and "0" not in codes)
+        places += [(number, found) for found in re.finditer(r"([XYZABC])(-?\d+\.\d+)", line)] if cutting else []
+    number, found = places[int(rng.integers(len(places)))]
+    off = 0.05 if found[1] in "XYZ" else 0.2
+    word = f"{found[1]}{float(found[2]) + off:.3f}"
+    lines[number] = lines[number][: found.start()] + word + lines[number][found.end() :]
+    return "\n".join(lines)
+
+
+REFUSALS = {"travel", "limit", "out-of-reach", "jump", "rewind", "retract", "machine-word"}
+
+
+def test_what_is_posted_is_what_the_cl_file_has(tmp_path: Path) -> None:
+    """Chains x words x limits: each point is met within the digits, each way within the tolerance, travels and limits
+    are kept; a word that is put off is seen."""
+    rng, tally, reasons, seen, spoilings = drawn(7), Counter[str](), Counter[str](), 0, 0
+    for number in range(rounds(40)):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        found = case(rng, folder)
+        text, said = posted(found)
+        if text is None:
+            codes = set(re.findall(r"error\[([a-z-]+)\]", said))
+            assert codes, said
+            tally["refused"] += 1
+            reasons.update(codes)
+            continue
+        wrong = list(wrongs(found, text))
+        assert not wrong, f"{folder}: {wrong[:3]}"
+        tally["posted"] += 1
+        tally["with words"] += bool(found.words.said())
+        tally["with limits"] += bool(found.limits)
+        spoilings += 1
+        seen += bool(list(wrongs(found, spoilt(rng, text))))
+    print(json.dumps({**tally, "refused because": dict(reasons), "spoilt": spoilings, "seen": seen}))
+    assert tally["posted"] * 2 >= tally["refused"], reasons
+    assert seen >= 0.9 * spoilings

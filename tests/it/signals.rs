@@ -77,3 +77,43 @@ fn a_command_that_shall_outlast_its_terminal_does() {
     let found = interrupted(shell, folder.path(), arguments, 1, &["-HUP", "-TERM"]);
     assert_eq!((found, names(folder.path())), (Some(143), Vec::new()));
 }
+
+/// No handler hears this signal; who writes there next takes away what it has left, and nothing of a run that lives.
+#[cfg(unix)]
+#[test]
+fn what_a_killed_command_leaves_is_taken_away_by_the_next_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let to_file = &["-m", "vmc", "-", "-o", "part.nc", "--summary", "s.json"];
+    let found = interrupted(command(), folder.path(), to_file, 2, &["-KILL"]);
+    assert_eq!((found, names(folder.path()).len()), (None, 2));
+    let kept = folder.path().join(".post-of-mine.old");
+    std::fs::write(&kept, "mine").unwrap();
+
+    // A second run waits for its CL file while a third one comes and goes.
+    let mut waiting = command()
+        .args(["-m", "vmc", "-", "-o", "other.nc"])
+        .current_dir(folder.path())
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut stdin = waiting.stdin.take().unwrap();
+    stdin.write_all(BEGUN.as_bytes()).unwrap();
+    until("what was left is gone, and a file of its own is there", || {
+        names(folder.path()).len() == 2
+    });
+    std::fs::write(folder.path().join("whole.cls"), format!("{BEGUN}FINI\n")).unwrap();
+    let third = command()
+        .args(["-m", "vmc", "whole.cls", "-o", "third.nc"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(third.status.success(), "{}", String::from_utf8_lossy(&third.stderr));
+    stdin.write_all(b"FINI\n").unwrap();
+    drop(stdin);
+    assert!(waiting.wait().unwrap().success());
+    let mut left = names(folder.path());
+    left.sort();
+    assert_eq!(left, [".post-of-mine.old", "other.nc", "third.nc", "whole.cls"]);
+}

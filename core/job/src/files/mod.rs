@@ -3,6 +3,7 @@
 //! Several texts of a run take their names together or not at all. Whatever reads a file of the user's notes it in
 //! [`ReadFiles`] of its session; whatever is written goes through [`AtomicFile`].
 
+mod abandoned;
 mod atomic_file;
 pub mod chart;
 mod cl_input;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
 use super::file_id::{FileId, folder};
-use super::temporary::{Temporary, builder, live};
+use super::temporary::{Temporary, former, live};
 
 /// Why not all texts have their names.
 #[derive(Debug)]
@@ -67,7 +67,7 @@ fn second_name(target: &Path) -> io::Result<Option<TempPath>> {
     if !target.exists() {
         return Ok(None);
     }
-    let second = builder().make_in(folder(target), |path| {
+    let second = former().make_in(folder(target), |path| {
         fs::hard_link(target, path).or_else(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => Err(error),
             // A disk without hard links, such as a memory stick.

@@ -10,6 +10,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
 
+use super::abandoned;
+
 /// Paths of the temporary files that exist. A file is made, renamed and deleted with this locked, so that a signal finds
 /// every one, and never one that has its name already.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -23,10 +25,21 @@ pub fn live() -> LivePaths {
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Names of temporary files: whoever finds one that a killed run left may delete it.
-pub fn builder() -> Builder<'static, 'static> {
+/// Begin and end of the names of temporary files: one that a killed run has left is nobody's, and the next run in its
+/// folder deletes it.
+pub(super) const PREFIX: &str = ".post-";
+pub(super) const SUFFIX: &str = ".tmp";
+
+fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
-    builder.prefix(".post-").suffix(".tmp");
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    builder
+}
+
+/// Names beside a file that is being replaced: what has one is the user's, and is kept whatever becomes of the run.
+pub fn former() -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX).suffix(".old");
     builder
 }
 
@@ -56,7 +69,8 @@ impl Temporary {
 
     fn new(builder: &Builder<'_, '_>, folder: &Path) -> io::Result<Self> {
         let mut live = live();
-        let file = builder.tempfile_in(folder)?;
+        abandoned::delete(folder);
+        let file = abandoned::claimed(|| builder.tempfile_in(folder))?;
         live.insert(file.path().to_owned());
         Ok(Self { file: Some(file) })
     }

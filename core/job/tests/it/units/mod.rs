@@ -8,6 +8,8 @@ mod one_job;
 mod read_ahead;
 mod solids;
 
+#[path = "../../../src/files/abandoned.rs"]
+mod abandoned;
 #[path = "../../../src/beside.rs"]
 mod beside;
 #[path = "../../../src/report/branch.rs"]

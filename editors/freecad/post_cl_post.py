@@ -155,6 +155,7 @@ class Course:
         self.frame = IDENTITY
         self.at = [None, None, None]  # in the frame of the operation, mm
         self.rotary = {}  # A, B and C, deg
+        self.has_moved = False
         self.leans = False  # the tool axis of the CL file is not Z
         self.plane = 2
         self.feed = None  # as written, mm/min
@@ -187,6 +188,7 @@ class Course:
         return product(back, self.frame)
 
     def goto(self, frame, point):
+        self.has_moved = True
         axis = turned(frame, (0.0, 0.0, 1.0))
         tip = placed(frame, point)
         upright = is_near(axis, (0.0, 0.0, 1.0))
@@ -206,6 +208,9 @@ class Course:
             self.refuse("it dresses up an operation on a work plane and has no plane itself: where its path stands is not known")
         self.end_cycle()
         if frame != self.frame:
+            # A clearance height is one of its own plane; where the tool is safe while the axes turn only the machine knows.
+            if self.has_moved and not is_near(turned(frame, (0.0, 0.0, 1.0)), turned(self.frame, (0.0, 0.0, 1.0))):
+                self.write("GOHOME")
             self.frame, self.at = frame, [None, None, None]
         self.plane, self.returns_high = 2, True
 
@@ -291,6 +296,13 @@ class Course:
 
     def move_rapid(self, words):
         at, rotary = self.target(words)
+        if rotary != self.rotary and not any(letter in words for letter in AXES):
+            # An index move: where the tool is safe meanwhile, the path does not say.
+            self.end_cycle()
+            if self.has_moved:
+                self.write("GOHOME")
+            self.rotary = rotary
+            return
         if self.cycle is not None:
             self.waiting.append((at, rotary))
             self.at, self.rotary = at, rotary
@@ -555,7 +567,7 @@ def exported(objectslist, filename, argstring):
         if filename != "-":
             base, program = os.path.splitext(filename)[0], filename
         else:
-            base, program = os.path.join(folder or scratch, clean(name)), os.path.join(scratch, "program")
+            base, program = os.path.join(folder or scratch, clean(name)), os.path.join(scratch, clean(name) + ".nc")
         if os.path.splitext(filename)[1] == ".cls":
             raise Refused(f"{filename}: the program would be written over its CL file: give it another ending")
         cl_file = base + ".cls"

@@ -1,0 +1,481 @@
+"""FreeCAD: its post-processor file, the template of a job, and machines of its machine editor.
+
+What the file makes of a path is tried with stand-ins of FreeCAD's objects; whole jobs are made by a script in FreeCAD
+itself, without a screen (``freecadcmd``), and their programs read by ``post verify`` and by LinuxCNC's interpreter. Where
+one of the two is not to be had its tests are skipped and say so.
+"""
+
+import importlib.util
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType, SimpleNamespace
+
+import pytest
+from conftest import CHECKOUT, COMMAND
+
+HERE = CHECKOUT / "editors/freecad"
+MACHINES = CHECKOUT / "machines"
+REAL = CHECKOUT.parent / "shared/linuxcnc"
+
+Commands = Sequence[tuple[str, dict[str, float]]]
+
+
+@pytest.fixture(scope="module")
+def processor() -> ModuleType:
+    """The file as FreeCAD loads it, without FreeCAD."""
+    described = importlib.util.spec_from_file_location("post_cl_post", HERE / "post_cl_post.py")
+    assert described is not None and described.loader is not None
+    module = importlib.util.module_from_spec(described)
+    described.loader.exec_module(module)
+    return module
+
+
+def item(label: str, commands: Commands, rows: Sequence[float] | None = None, **more: object) -> SimpleNamespace:
+    """An object of a job with a path; `rows` are the 16 numbers of its placement."""
+    path = SimpleNamespace(Commands=[SimpleNamespace(Name=name, Parameters=words) for name, words in commands])
+    if rows is not None:
+        more["Placement"] = SimpleNamespace(toMatrix=lambda: SimpleNamespace(A=tuple(rows)))
+    return SimpleNamespace(Label=label, Path=path, **more)
+
+
+def controller(number: int = 1, diameter: float = 6.0, shape: str = "endmill") -> SimpleNamespace:
+    tool = SimpleNamespace(Label="Mill", Diameter=SimpleNamespace(Value=diameter), ShapeName=shape)
+    commands: Commands = [("M6", {"T": float(number)}), ("M3", {"S": 3000.0})]
+    return item("TC", commands, ToolNumber=number, Tool=tool)
+
+
+def course(processor: ModuleType, *objects: SimpleNamespace, arguments: str = "") -> list[str]:
+    text: str = processor.export(list(objects), "-", f"--cl-only {arguments}")
+    return text.splitlines()
+
+
+START: Commands = [("G0", {"Z": 10.0}), ("G0", {"X": 1.0, "Y": 2.0}), ("G1", {"Z": -1.0, "F": 2.0})]
+# The plane of a face that looks to X: its X is Y of the part, its Y is Z, its Z is X; its origin is at (30, 0, 5).
+SIDE = (0, 0, 1, 30, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 0, 1)
+
+
+def test_a_path_becomes_points_feeds_and_arcs(processor: ModuleType) -> None:
+    arcs: Commands = [
+        ("G2", {"X": 3.0, "Y": 2.0, "I": 1.0, "J": 0.0, "K": 0.0, "F": 5.0}),
+        ("G3", {"X": 1.0, "Y": 2.0, "Z": -2.0, "I": -1.0, "J": 0.0}),
+    ]
+    lines = course(processor, controller(2), item("Pocket: 1/2", [*START, *arcs], CoolantMode="Mist"))
+    assert lines == [
+        "PARTNO/JOB",
+        "UNITS/MM",
+        "CUTTER/6",
+        "LOADTL/2",
+        "SPINDL/RPM,3000,CLW",
+        "TOOL PATH/Pocket 1 2,TOOL,Mill",
+        "COOLNT/MIST",
+        "RAPID",
+        "GOTO/1,2,10",
+        "FEDRAT/120,MMPM",
+        "GOTO/1,2,-1",
+        "FEDRAT/300,MMPM",
+        "CIRCLE/2,2,-1,0.000000000,0.000000000,-1.000000000,1",
+        "GOTO/3,2,-1",
+        "CIRCLE/2,2,-1,0.000000000,0.000000000,1.000000000,1",
+        "GOTO/1,2,-2",
+        "COOLNT/OFF",
+        "END-OF-PATH",
+        "FINI",
+    ]
+
+
+def test_the_first_way_of_two_commands_goes_over_its_place(processor: ModuleType) -> None:
+    """FreeCAD says the height first; until all three are known the path has said no place."""
+    lines = course(processor, item("Face", START))
+    assert lines.count("RAPID") == 1 and "GOTO/1,2,10" in lines
+
+
+def test_a_work_plane_turns_points_axes_and_arcs(processor: ModuleType) -> None:
+    arc: Commands = [("G3", {"X": 1.0, "Y": 4.0, "I": 0.0, "J": 1.0})]
+    lines = course(processor, controller(), item("Side", [*START, *arc], SIDE), item("Top", START))
+    tilted = "1.000000000,0.000000000,0.000000000"
+    assert f"GOTO/40,1,7,{tilted}" in lines
+    assert f"GOTO/29,1,7,{tilted}" in lines
+    assert f"CIRCLE/29,1,8,{tilted},1" in lines and f"GOTO/29,1,9,{tilted}" in lines
+    # Of the next operation, on the table again, nothing is taken over from the plane, and the tool is retracted before.
+    assert lines[lines.index("TOOL PATH/Top,TOOL,Mill") :][1:3] == ["RAPID", "GOTO/1,2,10"] and lines.count("GOHOME") == 1
+
+
+def test_arcs_of_the_other_planes(processor: ModuleType) -> None:
+    """G18: from Z to X is the sense of G3, as in G-code; about Y it is right-handed."""
+    for plane, words, axis in (("G18", {"I": 0.0, "K": 1.0}, "0.000000000,1.000000000,0.000000000"), ("G19", {"J": 1.0}, "1.000000000,0.000000000,0.000000000")):
+        lines = course(processor, item("Arc", [*START, (plane, {}), ("G3", {"X": 1.0, "Y": 2.0, "Z": -1.0, **words})]))
+        assert any(line.startswith("CIRCLE/") and axis in line for line in lines)
+
+
+def hole(x: float, name: str = "G81", **words: float) -> tuple[str, dict[str, float]]:
+    return name, {"X": x, "Y": 0.0, "Z": -8.0, "R": 2.0, "F": 2.5, **words}
+
+
+def over(x: float) -> Commands:
+    """What FreeCAD writes before each hole."""
+    return [("G0", {"X": x, "Y": 0.0}), ("G0", {"Z": 5.0})]
+
+
+def test_holes_become_one_cycle(processor: ModuleType) -> None:
+    path: Commands = [("G0", {"Z": 9.0}), ("G98", {}), *over(1), hole(1), *over(2), hole(2), ("G80", {}), ("G0", {"Z": 9.0})]
+    lines = course(processor, item("Drill", path))
+    at = lines.index("CYCLE/DRILL,RAPTO,0,FEDTO,10,RTRCTO,3,MMPM,150")
+    assert lines[at + 1 :] == ["GOTO/1,0,2", "GOTO/2,0,2", "CYCLE/OFF", "RAPID", "GOTO/2,0,9", "END-OF-PATH", "FINI"]
+
+
+def test_a_rapid_between_holes_that_is_more_than_the_cycles_own_stays(processor: ModuleType) -> None:
+    path: Commands = [("G0", {"Z": 9.0}), ("G99", {}), *over(1), hole(1), *over(2), hole(2), ("G80", {})]
+    lines = course(processor, item("Drill", path))
+    assert lines.count("CYCLE/OFF") == 2 and lines.count("GOTO/2,0,5") == 1
+    assert lines.count("CYCLE/DRILL,RAPTO,0,FEDTO,10,RTRCTO,0,MMPM,150") == 2
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "said"),
+    [
+        ("G82", {"P": 0.5}, "CYCLE/DRILL,RAPTO,0,FEDTO,10,RTRCTO,3,MMPM,150,DWELL,0.5"),
+        ("G83", {"Q": 3.0}, "CYCLE/DEEP,RAPTO,0,FEDTO,10,RTRCTO,3,MMPM,150,STEP,3"),
+        ("G73", {"Q": 3.0}, "CYCLE/BRKCHP,RAPTO,0,FEDTO,10,RTRCTO,3,MMPM,150,STEP,3"),
+        ("G84", {"S": 500.0, "F": 1.25}, "CYCLE/TAP,RAPTO,0,FEDTO,10,RTRCTO,3,MMPR,1.25"),
+    ],
+)
+def test_each_cycle(name: str, words: dict[str, float], said: str, processor: ModuleType) -> None:
+    assert said in course(processor, item("Drill", [("G0", {"Z": 9.0}), *over(1), hole(1, name, **words)]))
+
+
+@pytest.mark.parametrize(
+    ("commands", "told"),
+    [
+        ([("G1", {"X": 1.0})], "Op, command 1, G1: a cut before the path has said where"),
+        ([*START, ("G2", {"X": 3.0})], "G2 without a centre"),
+        ([*START, ("G41", {"D": 1.0})], "G41 D1 cannot be said in a CL file"),
+        ([*START, ("G91", {})], "G91 cannot be said"),
+        ([*START, ("G1", {"X": 3.0, "A": 90.0})], "--rotary part or --rotary iso"),
+        ([*START, ("G1", {"U": 3.0})], "the path moves U"),
+        ([*START, hole(1, "G83")], "without Q"),
+        ([*START, hole(1, L=2.0)], "more than once"),
+        ([*START, ("G81", {"X": 1.0, "Y": 0.0, "Z": 3.0, "R": 2.0, "F": 1.0})], "is not below R"),
+        ([*START, hole(1, F=0.0)], "vertical feed is 0"),
+        ([("M3", {})], "without a speed"),
+    ],
+)
+def test_what_cannot_be_said_is_refused_by_its_place(commands: Commands, told: str, processor: ModuleType) -> None:
+    with pytest.raises(processor.Refused, match=re.escape(told)):
+        course(processor, item("Op", commands))
+
+
+def test_a_dressing_up_of_a_work_plane_without_the_plane_is_refused(processor: ModuleType) -> None:
+    base = item("Op", START, SIDE)
+    with pytest.raises(processor.Refused, match="dresses up an operation on a work plane"):
+        course(processor, item("Dressup", START, Base=base))
+
+
+def test_words_of_rotary_axes(processor: ModuleType) -> None:
+    """A quarter turn of A: what was up looks to Y, by FreeCAD's own count; ISO 841 has it the other way."""
+    path: Commands = [("G0", {"A": 90.0}), ("G0", {"X": 0.0, "Y": 0.0, "Z": 10.0}), ("G1", {"Z": 4.0, "F": 1.0})]
+    assert "GOTO/0,4,0,0.000000000,1.000000000,0.000000000" in course(processor, item("Op", path), arguments="--rotary part")
+    assert "GOTO/0,-4,0,0.000000000,-1.000000000,0.000000000" in course(processor, item("Op", path), arguments="--rotary iso")
+    # Between two indexed cuts the tool is retracted: the path does not say where it is safe.
+    index: Commands = [*path, ("G0", {"A": 0.0}), ("G0", {"Z": 10.0}), ("G1", {"Z": 4.0})]
+    lines = course(processor, item("Op", index), arguments="--rotary part")
+    at = lines.index("GOHOME")
+    assert lines[at + 1 : at + 3] == ["RAPID", "GOTO/0,0,10,0.000000000,0.000000000,1.000000000"]
+    # A cut in which A turns is taken apart: the tip goes round.
+    round_cut: Commands = [("G0", {"X": 0.0, "Y": 0.0, "Z": 10.0}), ("G1", {"A": 90.0, "F": 1.0})]
+    lines = [line for line in course(processor, item("Op", round_cut), arguments="--rotary part") if line.startswith("GOTO")]
+    assert len(lines) > 45 and lines[-1] == "GOTO/0,10,0,0.000000000,1.000000000,0.000000000"
+
+
+def test_switched_off_operations_and_unknown_systems(processor: ModuleType) -> None:
+    lines = course(processor, item("Off", START, Active=False), item("On", START))
+    assert not any("Off" in line for line in lines)
+    fixtures = [item("G54", [("G54", {}), ("G0", {"Z": 30.0})]), item("G55", [("G55", {}), ("G0", {"Z": 30.0})])]
+    assert [line for line in course(processor, *fixtures) if "OFSETL" in line] == ["SET/OFSETL,1", "SET/OFSETL,2"]
+    assert not [line for line in course(processor, fixtures[0]) if "OFSETL" in line]
+
+
+def test_program_cl_file_and_report_stand_beside_one_another(processor: ModuleType, tmp_path: Path) -> None:
+    program = tmp_path / "part.ngc"
+    arguments = f"--machine {MACHINES / 'vmc.toml'} --command {COMMAND} --dialect linuxcnc --tool-length 100"
+    text = processor.export([controller(), item("Face", START)], str(program), arguments)
+    assert text == program.read_text() and "G1 Z-1.0000 F120." in text
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["part.cls", "part.html", "part.ngc"]
+    # FreeCAD 1.0 and newer write the program themselves.
+    again = processor.export([controller(), item("Face", START)], "-", arguments)
+    assert again == text.replace("(PART)", "(JOB)")
+
+
+def test_a_refusal_of_post_is_the_refusal_of_the_job(processor: ModuleType, tmp_path: Path) -> None:
+    far: Commands = [("G0", {"X": 5000.0, "Y": 0.0, "Z": 10.0}), ("G1", {"Z": -1.0, "F": 2.0})]
+    arguments = f"--machine {MACHINES / 'vmc.toml'} --command {COMMAND} --tool-length 100 --mount 0,0,0"
+    with pytest.raises(processor.Refused, match="over-travel"):
+        processor.export([controller(), item("Face", far)], str(tmp_path / "part.nc"), arguments)
+    assert not (tmp_path / "part.nc").exists()
+    for wrong, told in (("", "--machine NAME"), ("--machine vmc --command /no/post", "--command names it"), ("--rotary left", "--rotary")):
+        with pytest.raises(processor.Refused, match=re.escape(told)):
+            processor.export([controller(), item("Face", START)], str(tmp_path / "part.nc"), wrong)
+
+
+# ---------------------------------------------------------------- FreeCAD itself
+
+JOB = """
+import json, os
+import FreeCAD, Part
+import Path
+import PathScripts.PathCustom as PathCustom
+import PathScripts.PathDrilling as PathDrilling
+import PathScripts.PathJob as PathJob
+import PathScripts.PathPost as PathPost
+import PathScripts.PathProfile as PathProfile
+
+asked = json.loads(os.environ["POST_JOB"])
+document = FreeCAD.newDocument("Plate")
+solid = document.addObject("Part::Box", "Box")
+solid.Length, solid.Width, solid.Height = 60, 40, 20
+for number, (x, y) in enumerate([(15, 20), (45, 20), (30, 10)]):
+    hole = document.addObject("Part::Cylinder", "Hole%d" % number)
+    hole.Radius, hole.Height, hole.Placement.Base = 2.5, 30, FreeCAD.Vector(x, y, -5)
+    cut = document.addObject("Part::Cut", "Cut%d" % number)
+    cut.Base, cut.Tool = solid, hole
+    solid = cut
+document.recompute()
+job = PathJob.Create("Job", [solid], asked["template"])
+document.recompute()
+tool = job.Tools.Group[0]
+tool.HorizFeed, tool.VertFeed, tool.SpindleSpeed, tool.ToolNumber = "600 mm/min", "200 mm/min", 3000, 1
+if asked["kind"] == "plate":
+    PathProfile.Create("Profile").CoolantMode = "Flood"
+    drill = PathDrilling.Create("Drill")
+    clone = job.Model.Group[0]
+    round_faces = [n for n, face in enumerate(clone.Shape.Faces, 1) if isinstance(face.Surface, Part.Cylinder)]
+    drill.Base = [(clone, ["Face%d" % n]) for n in round_faces]
+else:
+    for number, degrees in enumerate((0, 35)):
+        operation = PathCustom.Create("Slot%d" % number)
+        operation.ToolController = tool
+        operation.Gcode = [
+            "G0 Z15", "G0 X2 Y3", "G1 Z-1 F5", "G1 X12 F10", "G3 X12 Y9 I0 J3", "G0 Z15",
+            "G98", "G0 X0 Y-6", "G83 X0 Y-6 Z-6 R2 Q2 F3", "G80", "G0 Z15",
+        ]
+        turn = FreeCAD.Rotation(FreeCAD.Vector(0.6, 0.8, 0), degrees)
+        operation.Placement = FreeCAD.Placement(FreeCAD.Vector(4 * number, 0, 25), turn)
+document.recompute()
+job.PostProcessor, job.PostProcessorArgs = asked.get("post", job.PostProcessor), asked["arguments"]
+job.PostProcessorOutputFile = asked["output"]
+
+# The points of all cuts as FreeCAD itself places them.
+points = []
+for operation in job.Operations.Group:
+    at = FreeCAD.Vector()
+    for command in operation.Path.Commands:
+        at = FreeCAD.Vector(*(command.Parameters.get(letter, before) for letter, before in zip("XYZ", at)))
+        if command.Name in ("G1", "G2", "G3"):
+            points.append(list(operation.Placement.multVec(at)))
+post = PathPost.CommandPathPost()
+objects = [item for group in post.buildPostList(job) for item in group]
+failed, program, name = post.exportObjectsWith(objects, job)
+with open(asked["told"], "w") as file:
+    json.dump({"failed": failed, "program": program, "name": name, "points": points, "post": job.PostProcessor}, file)
+"""
+
+
+def made(room: Path, kind: str, arguments: str) -> dict[str, object]:
+    """A job that FreeCAD makes and posts; the file lies in its macro folder, as a user lays it."""
+    freecad = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
+    if freecad is None:
+        pytest.skip("FreeCAD is not here (package freecad-python3)")
+    macros = room / "home/.local/share/FreeCAD/Macro"
+    macros.mkdir(parents=True)
+    shutil.copy(HERE / "post_cl_post.py", macros)
+    asked = {
+        "kind": kind,
+        "template": str(HERE / "job_post.json"),
+        "arguments": f"--command {COMMAND} {arguments}",
+        "output": str(room / "part.ngc"),
+        "told": str(room / "told.json"),
+    }
+    (room / "job.py").write_text(JOB)
+    environment = {**os.environ, "HOME": str(room / "home"), "POST_JOB": json.dumps(asked), "QT_QPA_PLATFORM": "offscreen"}
+    for name in ("XDG_DATA_HOME", "XDG_CONFIG_HOME"):
+        environment.pop(name, None)
+    run = subprocess.run([freecad, room / "job.py"], env=environment, capture_output=True, text=True, timeout=300)
+    if not (room / "told.json").is_file() and "No module named 'PathScripts" in run.stdout + run.stderr:
+        pytest.skip("this FreeCAD keeps its CAM elsewhere: the script of this test is for 0.20")
+    assert (room / "told.json").is_file(), run.stdout[-3000:] + run.stderr[-3000:]
+    told: dict[str, object] = json.loads((room / "told.json").read_text())
+    return told
+
+
+def cut_points(cl_file: Path) -> list[list[float]]:
+    """The ends of the cuts of a CL file."""
+    points, rapid, cycle = [], False, False
+    for line in cl_file.read_text().splitlines():
+        word, _, rest = line.partition("/")
+        if word == "CYCLE":
+            cycle = rest != "OFF"
+        elif word == "GOTO":
+            if not rapid and not cycle:
+                points.append([float(each) for each in rest.split(",")[:3]])
+            rapid = False
+        rapid = rapid or word == "RAPID"
+    return points
+
+
+def close(one: Sequence[Sequence[float]], other: Sequence[Sequence[float]], within: float) -> bool:
+    return len(one) == len(other) and all(
+        abs(a - b) <= within for first, second in zip(one, other, strict=True) for a, b in zip(first, second, strict=True)
+    )
+
+
+def interpreted(program: Path) -> list[list[float]]:
+    """Where the cuts of a program end, by LinuxCNC's interpreter."""
+    if not (REAL / "interpret").is_file():
+        pytest.skip(f"{REAL / 'interpret'} is not here: LinuxCNC's interpreter is not asked")
+    run = subprocess.run([REAL / "interpret", program, "--tool", "1=100", "--metric"], capture_output=True, text=True)
+    if run.returncode == 3:
+        pytest.skip(f"LinuxCNC's interpreter is not to be had: {run.stderr.strip()}")
+    assert run.returncode == 0, run.stderr
+    ends = []
+    at = [0.0, 0.0, 0.0]
+    for line in run.stdout.splitlines():
+        found = re.search(r"(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED)\(([^)]*)\)", line)
+        if not found:
+            continue
+        numbers = [float(each) for each in found[2].split(",")]
+        at = [numbers[0], numbers[1], numbers[5]] if found[1] == "ARC_FEED" else numbers[:3]
+        if found[1] != "STRAIGHT_TRAVERSE":
+            ends.append(at)
+    return ends
+
+
+def test_a_plate_of_freecad_is_the_plate_that_linuxcnc_reads(tmp_path: Path) -> None:
+    """Every cut of FreeCAD's path ends where LinuxCNC's interpreter ends it; the template names the post-processor."""
+    machine = MACHINES / "vmc.toml"
+    told = made(tmp_path, "plate", f"--machine {machine} --dialect linuxcnc --tool-length 100 --mount 0,0,0")
+    assert told["post"] == "post_cl" and not told["failed"]
+    program = tmp_path / "part.ngc"
+    assert program.read_text() == told["program"] and (tmp_path / "part.html").is_file()
+    points = told["points"]
+    assert isinstance(points, list) and len(points) > 40 and close(cut_points(tmp_path / "part.cls"), points, 1e-6)
+    text = program.read_text()
+    assert text.count("G81") == 1 and text.count("G2 ") + text.count("G3 ") >= 20
+    verify = [COMMAND, "verify", program, "-m", machine, "--against", tmp_path / "part.cls", "--tool-length", "100", "--mount", "0,0,0", "--dialect", "linuxcnc"]
+    run = subprocess.run(verify, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    # The interpreter tells the moves of the holes too: to their bottoms.
+    ends = interpreted(program)
+    assert close([end for end in ends if end[2] != 0], points, 1e-4)
+    assert [end[:2] for end in ends if end[2] == 0] == [[15, 20], [30, 10], [45, 20]]
+
+
+def test_an_indexed_job_of_freecad_on_a_table_of_linuxcnc(tmp_path: Path) -> None:
+    """What FreeCAD declares and refuses: every coordinate about the machine's own lines."""
+    machine = MACHINES / "xyzac-trt.toml"
+    told = made(tmp_path, "indexed", f"--machine {machine} --tool-length 60")
+    points = told["points"]
+    assert isinstance(points, list) and close(cut_points(tmp_path / "part.cls"), points, 2e-6)
+    run = subprocess.run([COMMAND, "verify", tmp_path / "part.ngc", "-m", machine, "--against", tmp_path / "part.cls", "--tool-length", "60"], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    text = (tmp_path / "part.ngc").read_text()
+    assert re.search(r"G0 A-?35\.0000", text), text
+    interpreted(tmp_path / "part.ngc")
+
+
+def test_an_indexed_job_of_freecad_in_planes_of_the_control(tmp_path: Path) -> None:
+    machine = MACHINES / "dmu50.toml"
+    made(tmp_path, "indexed", f"--machine {machine} --tool-length 60")
+    text = (tmp_path / "part.ngc").read_text()
+    assert "PLANE SPATIAL" in text and "CYCL DEF" in text
+
+
+# ---------------------------------------------------------------- machines
+
+
+def converted(source: Path, to: Path, *more: str) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, HERE / "post-fcm", source, "-o", to, "--post", COMMAND, *more]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib is of Python 3.11")
+@pytest.mark.parametrize("name", ["vmc", "umc-750", "xyzac-trt", "head-head", "dmu50", "bc-fork", "linuxcnc-5axis", "head-table-bc", "ac-trunnion"])
+def test_a_machine_comes_back_from_freecads_file(name: str, tmp_path: Path) -> None:
+    """The law, travels and speeds, to the last digit that `post check` compares."""
+    there, back = tmp_path / f"{name}.fcm", tmp_path / f"{name}.toml"
+    run = converted(MACHINES / f"{name}.toml", there)
+    assert run.returncode == 0, run.stderr
+    run = converted(there, back, "--dialect", "linuxcnc")
+    assert run.returncode == 0, run.stderr
+    compared = subprocess.run([COMMAND, "check", back, "--nominal", MACHINES / f"{name}.toml"], capture_output=True, text=True)
+    assert compared.returncode == 0, compared.stderr
+    assert "tip deviation     at most 0.00000 mm" in compared.stdout and "axis deviation    at most 0.000000°" in compared.stdout
+
+    def axes(machine: Path) -> list[tuple[object, ...]]:
+        told = tmp_path / "check.json"
+        subprocess.run([COMMAND, "check", machine, "--json", told], capture_output=True, check=True)
+        found = json.loads(told.read_text())["class"]["axes"]
+        return sorted((each["name"], tuple(each["travel"] or (-36000, 36000)), each["max_feed"]) for each in found)
+
+    assert axes(back) == axes(MACHINES / f"{name}.toml")
+
+
+def freecad_machine(**changes: object) -> dict[str, object]:
+    """A mill with a table C on a trunnion A, in the form that FreeCAD 1.2 writes."""
+    def axis(kind: str, role: str, vector: list[float], least: float, most: float, parent: str | None = None) -> dict[str, object]:
+        return {"type": kind, "role": role, "parent": parent, "sequence": 0, "joint": [[0, 0, 0], vector], "limits": {"min": least, "max": most}, "max_velocity": 600}
+
+    axes = {
+        "X": axis("linear", "table_linear", [1, 0, 0], 0, 20),
+        "Y": axis("linear", "table_linear", [0, 1, 0], 0, 14),
+        "Z": axis("linear", "head_linear", [0, 0, 1], 0, 16),
+        "C": axis("rotary", "table_rotary", [0, 0, 1], -360, 360),
+        "A": axis("rotary", "table_rotary", [-1, 0, 0], -120, 30, "C"),
+    }
+    machine: dict[str, object] = {"name": "MCV", "manufacturer": "Dah", "units": "imperial", "axes": axes, "toolheads": [{"name": "Spindle", "max_rpm": 6000}]}
+    machine.update(changes)
+    return {"machine": machine, "postprocessor": {"file_name": "fanuc"}, "version": 1}
+
+
+def test_units_senses_and_the_order_of_a_table(tmp_path: Path) -> None:
+    """FreeCAD turns about Z first and tilts then, whichever it calls the parent; its table angles are against ISO 841."""
+    (tmp_path / "mcv.fcm").write_text(json.dumps(freecad_machine()))
+    run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml", "--gauge", "0,0,500")
+    assert run.returncode == 0, run.stderr
+    text = (tmp_path / "mcv.toml").read_text()
+    assert "chain = \"[w C' A' Y' X' b Z (S) t]\"" in text and 'name  = "Dah MCV"' in text
+    assert "travel   = [0, 508]" in text and "max_feed = 15240" in text and "max_speed = 6000" in text
+    table = dict(part.split("\n\n")[0].split("]\n", 1) for part in text.split("[axis.")[1:])
+    assert "reversed = true" in table["C"] and "reversed" not in table["A"]
+    assert 'dialect = "fanuc"' in text and 'tcp     = "post"' in text and "gauge = [0, 0, 500]" in text
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "told"),
+    [
+        (("axes", "X", "joint"), [[0, 0, 0], [0, 0, 0]], "has no length"),
+        (("axes", "X", "limits"), {"min": 5, "max": 5}, "no travel"),
+        (("axes", "A", "parent"), "Q", "its parent Q is not there"),
+        (("axes", "X", "parent"), "C", "a linear axis on a rotary one"),
+        (("toolheads",), [{"name": "Laser", "toolhead_type": "laser"}], "no spindle"),
+        (("kinematics",), {"base_frame": {"origin": [1, 0, 0]}}, "base_frame"),
+        (("units",), "cubits", "metric or imperial"),
+        (("axes",), {}, "no axes"),
+    ],
+)
+def test_what_freecads_file_leaves_open_is_refused(path: tuple[str, ...], value: object, told: str, tmp_path: Path) -> None:
+    data = freecad_machine()
+    at = data["machine"]
+    for key in path[:-1]:
+        assert isinstance(at, dict)
+        at = at[key]
+    assert isinstance(at, dict)
+    at[path[-1]] = value
+    (tmp_path / "mcv.fcm").write_text(json.dumps(data))
+    run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml")
+    assert run.returncode == 1 and told in run.stderr
+    assert not (tmp_path / "mcv.toml").exists()

@@ -17,7 +17,9 @@ import shlex
 import subprocess
 import tempfile
 
-TOOLTIP = "Hands the job to the command `post`: a program of a machine that is described in a file, read back and proven."
+TOOLTIP = (
+    "Hands the job to the command `post`: a program of a machine that is described in a file, read back and proven."
+)
 UNITS = "G21"  # what a path holds
 
 NEAR = 1e-6  # mm; FreeCAD's paths have six decimals
@@ -47,7 +49,9 @@ class Arguments(argparse.ArgumentParser):
 
 
 def arguments():
-    parser = Arguments(prog="post_cl", description=TOOLTIP, epilog="All others are options of `post`.", allow_abbrev=False)
+    parser = Arguments(
+        prog="post_cl", description=TOOLTIP, epilog="All others are options of `post`.", allow_abbrev=False
+    )
     parser.add_argument("-m", "--machine", help="a machine file, or the name of a machine that post knows")
     parser.add_argument("--command", default="post", help="the command [post]")
     parser.add_argument("--cl-only", action="store_true", help="the CL file in the place of the program")
@@ -59,7 +63,9 @@ def arguments():
         help="what A, B and C of a path mean, whose lines go through the job's origin: part, the part turns right-handed by "
         "them (FreeCAD's rotation generator); iso, as ISO 841 has it, the tool turns so against the part",
     )
-    parser.add_argument("--leave-out", action="append", default=[], metavar="G64", help="a command of paths to leave out")
+    parser.add_argument(
+        "--leave-out", action="append", default=[], metavar="G64", help="a command of paths to leave out"
+    )
     return parser
 
 
@@ -84,7 +90,9 @@ def placed(frame, point):
 
 def product(first, second):
     """The frame `second` as it stands in `first`."""
-    columns = [turned(first, [row[each] for row in second]) for each in range(3)] + [placed(first, [row[3] for row in second])]
+    columns = [turned(first, [row[each] for row in second]) for each in range(3)] + [
+        placed(first, [row[3] for row in second])
+    ]
     return tuple(zip(*columns))
 
 
@@ -205,7 +213,9 @@ class Course:
         base = getattr(item, "Base", None)
         # A dressing-up of an operation on a work plane that does not say the plane itself.
         if frame == IDENTITY and hasattr(base, "Path") and not is_identity(placement_of(base)):
-            self.refuse("it dresses up an operation on a work plane and has no plane itself: where its path stands is not known")
+            self.refuse(
+                "it dresses up an operation on a work plane and has no plane itself: where its path stands is not known"
+            )
         self.end_cycle()
         if frame != self.frame:
             # A clearance height is one of its own plane; where the tool is safe while the axes turn only the machine knows.
@@ -326,7 +336,10 @@ class Course:
         start, start_rotary = self.at, self.rotary
         for share in self.shares(start, at, start_rotary, rotary):
             between = [a + (b - a) * share for a, b in zip(start, at)]
-            turn = {letter: start_rotary.get(letter, 0.0) * (1 - share) + rotary.get(letter, 0.0) * share for letter in rotary}
+            turn = {
+                letter: start_rotary.get(letter, 0.0) * (1 - share) + rotary.get(letter, 0.0) * share
+                for letter in rotary
+            }
             self.goto(self.frame_at(turn), between)
         self.at, self.rotary = at, rotary
 
@@ -507,12 +520,15 @@ def cl_text(objects, asked, name):
 
 
 def job_name(objects):
-    """The document and its job, for names of files and the head of the program; the document's folder."""
+    """The document, for names of files and the head of the program, and its folder."""
     for item in objects:
         document = getattr(item, "Document", None)
-        if document is not None:
-            folder = os.path.dirname(getattr(document, "FileName", "") or "")
-            return document.Label, folder
+        if document is None:
+            continue
+        folder = os.path.dirname(getattr(document, "FileName", "") or "")
+        is_split = any(getattr(each, "SplitOutput", False) for each in getattr(document, "Objects", []))
+        # Of a job in several programs FreeCAD 1.0 does not say which one this is.
+        return (f"{document.Label}-{objects[-1].Label}" if is_split else document.Label), folder
     return "JOB", ""
 
 

@@ -103,12 +103,17 @@ def test_a_work_plane_turns_points_axes_and_arcs(processor: ModuleType) -> None:
     assert f"GOTO/29,1,7,{tilted}" in lines
     assert f"CIRCLE/29,1,8,{tilted},1" in lines and f"GOTO/29,1,9,{tilted}" in lines
     # Of the next operation, on the table again, nothing is taken over from the plane, and the tool is retracted before.
-    assert lines[lines.index("TOOL PATH/Top,TOOL,Mill") :][1:3] == ["RAPID", "GOTO/1,2,10"] and lines.count("GOHOME") == 1
+    assert (
+        lines[lines.index("TOOL PATH/Top,TOOL,Mill") :][1:3] == ["RAPID", "GOTO/1,2,10"] and lines.count("GOHOME") == 1
+    )
 
 
 def test_arcs_of_the_other_planes(processor: ModuleType) -> None:
     """G18: from Z to X is the sense of G3, as in G-code; about Y it is right-handed."""
-    for plane, words, axis in (("G18", {"I": 0.0, "K": 1.0}, "0.000000000,1.000000000,0.000000000"), ("G19", {"J": 1.0}, "1.000000000,0.000000000,0.000000000")):
+    for plane, words, axis in (
+        ("G18", {"I": 0.0, "K": 1.0}, "0.000000000,1.000000000,0.000000000"),
+        ("G19", {"J": 1.0}, "1.000000000,0.000000000,0.000000000"),
+    ):
         lines = course(processor, item("Arc", [*START, (plane, {}), ("G3", {"X": 1.0, "Y": 2.0, "Z": -1.0, **words})]))
         assert any(line.startswith("CIRCLE/") and axis in line for line in lines)
 
@@ -123,7 +128,16 @@ def over(x: float) -> Commands:
 
 
 def test_holes_become_one_cycle(processor: ModuleType) -> None:
-    path: Commands = [("G0", {"Z": 9.0}), ("G98", {}), *over(1), hole(1), *over(2), hole(2), ("G80", {}), ("G0", {"Z": 9.0})]
+    path: Commands = [
+        ("G0", {"Z": 9.0}),
+        ("G98", {}),
+        *over(1),
+        hole(1),
+        *over(2),
+        hole(2),
+        ("G80", {}),
+        ("G0", {"Z": 9.0}),
+    ]
     lines = course(processor, item("Drill", path))
     at = lines.index("CYCLE/DRILL,RAPTO,0,FEDTO,10,RTRCTO,3,MMPM,150")
     assert lines[at + 1 :] == ["GOTO/1,0,2", "GOTO/2,0,2", "CYCLE/OFF", "RAPID", "GOTO/2,0,9", "END-OF-PATH", "FINI"]
@@ -179,8 +193,12 @@ def test_a_dressing_up_of_a_work_plane_without_the_plane_is_refused(processor: M
 def test_words_of_rotary_axes(processor: ModuleType) -> None:
     """A quarter turn of A: what was up looks to Y, by FreeCAD's own count; ISO 841 has it the other way."""
     path: Commands = [("G0", {"A": 90.0}), ("G0", {"X": 0.0, "Y": 0.0, "Z": 10.0}), ("G1", {"Z": 4.0, "F": 1.0})]
-    assert "GOTO/0,4,0,0.000000000,1.000000000,0.000000000" in course(processor, item("Op", path), arguments="--rotary part")
-    assert "GOTO/0,-4,0,0.000000000,-1.000000000,0.000000000" in course(processor, item("Op", path), arguments="--rotary iso")
+    assert "GOTO/0,4,0,0.000000000,1.000000000,0.000000000" in course(
+        processor, item("Op", path), arguments="--rotary part"
+    )
+    assert "GOTO/0,-4,0,0.000000000,-1.000000000,0.000000000" in course(
+        processor, item("Op", path), arguments="--rotary iso"
+    )
     # Between two indexed cuts the tool is retracted: the path does not say where it is safe.
     index: Commands = [*path, ("G0", {"A": 0.0}), ("G0", {"Z": 10.0}), ("G1", {"Z": 4.0})]
     lines = course(processor, item("Op", index), arguments="--rotary part")
@@ -188,7 +206,9 @@ def test_words_of_rotary_axes(processor: ModuleType) -> None:
     assert lines[at + 1 : at + 3] == ["RAPID", "GOTO/0,0,10,0.000000000,0.000000000,1.000000000"]
     # A cut in which A turns is taken apart: the tip goes round.
     round_cut: Commands = [("G0", {"X": 0.0, "Y": 0.0, "Z": 10.0}), ("G1", {"A": 90.0, "F": 1.0})]
-    lines = [line for line in course(processor, item("Op", round_cut), arguments="--rotary part") if line.startswith("GOTO")]
+    lines = [
+        line for line in course(processor, item("Op", round_cut), arguments="--rotary part") if line.startswith("GOTO")
+    ]
     assert len(lines) > 45 and lines[-1] == "GOTO/0,10,0,0.000000000,1.000000000,0.000000000"
 
 
@@ -217,7 +237,11 @@ def test_a_refusal_of_post_is_the_refusal_of_the_job(processor: ModuleType, tmp_
     with pytest.raises(processor.Refused, match="over-travel"):
         processor.export([controller(), item("Face", far)], str(tmp_path / "part.nc"), arguments)
     assert not (tmp_path / "part.nc").exists()
-    for wrong, told in (("", "--machine NAME"), ("--machine vmc --command /no/post", "--command names it"), ("--rotary left", "--rotary")):
+    for wrong, told in (
+        ("", "--machine NAME"),
+        ("--machine vmc --command /no/post", "--command names it"),
+        ("--rotary left", "--rotary"),
+    ):
         with pytest.raises(processor.Refused, match=re.escape(told)):
             processor.export([controller(), item("Face", START)], str(tmp_path / "part.nc"), wrong)
 
@@ -301,7 +325,12 @@ def made(room: Path, kind: str, arguments: str) -> dict[str, object]:
         "told": str(room / "told.json"),
     }
     (room / "job.py").write_text(JOB)
-    environment = {**os.environ, "HOME": str(room / "home"), "POST_JOB": json.dumps(asked), "QT_QPA_PLATFORM": "offscreen"}
+    environment = {
+        **os.environ,
+        "HOME": str(room / "home"),
+        "POST_JOB": json.dumps(asked),
+        "QT_QPA_PLATFORM": "offscreen",
+    }
     for name in ("XDG_DATA_HOME", "XDG_CONFIG_HOME"):
         environment.pop(name, None)
     run = subprocess.run([freecad, room / "job.py"], env=environment, capture_output=True, text=True, timeout=300)
@@ -329,7 +358,9 @@ def cut_points(cl_file: Path) -> list[list[float]]:
 
 def close(one: Sequence[Sequence[float]], other: Sequence[Sequence[float]], within: float) -> bool:
     return len(one) == len(other) and all(
-        abs(a - b) <= within for first, second in zip(one, other, strict=True) for a, b in zip(first, second, strict=True)
+        abs(a - b) <= within
+        for first, second in zip(one, other, strict=True)
+        for a, b in zip(first, second, strict=True)
     )
 
 
@@ -365,7 +396,21 @@ def test_a_plate_of_freecad_is_the_plate_that_linuxcnc_reads(tmp_path: Path) -> 
     assert isinstance(points, list) and len(points) > 40 and close(cut_points(tmp_path / "part.cls"), points, 1e-6)
     text = program.read_text()
     assert text.count("G81") == 1 and text.count("G2 ") + text.count("G3 ") >= 20
-    verify = [COMMAND, "verify", program, "-m", machine, "--against", tmp_path / "part.cls", "--tool-length", "100", "--mount", "0,0,0", "--dialect", "linuxcnc"]
+    verify = [
+        COMMAND,
+        "verify",
+        program,
+        "-m",
+        machine,
+        "--against",
+        tmp_path / "part.cls",
+        "--tool-length",
+        "100",
+        "--mount",
+        "0,0,0",
+        "--dialect",
+        "linuxcnc",
+    ]
     run = subprocess.run(verify, capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     # The interpreter tells the moves of the holes too: to their bottoms.
@@ -380,7 +425,21 @@ def test_an_indexed_job_of_freecad_on_a_table_of_linuxcnc(tmp_path: Path) -> Non
     told = made(tmp_path, "indexed", f"--machine {machine} --tool-length 60")
     points = told["points"]
     assert isinstance(points, list) and close(cut_points(tmp_path / "part.cls"), points, 2e-6)
-    run = subprocess.run([COMMAND, "verify", tmp_path / "part.ngc", "-m", machine, "--against", tmp_path / "part.cls", "--tool-length", "60"], capture_output=True, text=True)
+    run = subprocess.run(
+        [
+            COMMAND,
+            "verify",
+            tmp_path / "part.ngc",
+            "-m",
+            machine,
+            "--against",
+            tmp_path / "part.cls",
+            "--tool-length",
+            "60",
+        ],
+        capture_output=True,
+        text=True,
+    )
     assert run.returncode == 0, run.stderr
     text = (tmp_path / "part.ngc").read_text()
     assert re.search(r"G0 A-?35\.0000", text), text
@@ -403,7 +462,10 @@ def converted(source: Path, to: Path, *more: str) -> "subprocess.CompletedProces
 
 
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib is of Python 3.11")
-@pytest.mark.parametrize("name", ["vmc", "umc-750", "xyzac-trt", "head-head", "dmu50", "bc-fork", "linuxcnc-5axis", "head-table-bc", "ac-trunnion"])
+@pytest.mark.parametrize(
+    "name",
+    ["vmc", "umc-750", "xyzac-trt", "head-head", "dmu50", "bc-fork", "linuxcnc-5axis", "head-table-bc", "ac-trunnion"],
+)
 def test_a_machine_comes_back_from_freecads_file(name: str, tmp_path: Path) -> None:
     """The law, travels and speeds, to the last digit that `post check` compares."""
     there, back = tmp_path / f"{name}.fcm", tmp_path / f"{name}.toml"
@@ -411,9 +473,14 @@ def test_a_machine_comes_back_from_freecads_file(name: str, tmp_path: Path) -> N
     assert run.returncode == 0, run.stderr
     run = converted(there, back, "--dialect", "linuxcnc")
     assert run.returncode == 0, run.stderr
-    compared = subprocess.run([COMMAND, "check", back, "--nominal", MACHINES / f"{name}.toml"], capture_output=True, text=True)
+    compared = subprocess.run(
+        [COMMAND, "check", back, "--nominal", MACHINES / f"{name}.toml"], capture_output=True, text=True
+    )
     assert compared.returncode == 0, compared.stderr
-    assert "tip deviation     at most 0.00000 mm" in compared.stdout and "axis deviation    at most 0.000000°" in compared.stdout
+    assert (
+        "tip deviation     at most 0.00000 mm" in compared.stdout
+        and "axis deviation    at most 0.000000°" in compared.stdout
+    )
 
     def axes(machine: Path) -> list[tuple[object, ...]]:
         told = tmp_path / "check.json"
@@ -426,8 +493,19 @@ def test_a_machine_comes_back_from_freecads_file(name: str, tmp_path: Path) -> N
 
 def freecad_machine(**changes: object) -> dict[str, object]:
     """A mill with a table C on a trunnion A, in the form that FreeCAD 1.2 writes."""
-    def axis(kind: str, role: str, vector: list[float], least: float, most: float, parent: str | None = None) -> dict[str, object]:
-        return {"type": kind, "role": role, "parent": parent, "sequence": 0, "joint": [[0, 0, 0], vector], "limits": {"min": least, "max": most}, "max_velocity": 600}
+
+    def axis(
+        kind: str, role: str, vector: list[float], least: float, most: float, parent: str | None = None
+    ) -> dict[str, object]:
+        return {
+            "type": kind,
+            "role": role,
+            "parent": parent,
+            "sequence": 0,
+            "joint": [[0, 0, 0], vector],
+            "limits": {"min": least, "max": most},
+            "max_velocity": 600,
+        }
 
     axes = {
         "X": axis("linear", "table_linear", [1, 0, 0], 0, 20),
@@ -436,7 +514,13 @@ def freecad_machine(**changes: object) -> dict[str, object]:
         "C": axis("rotary", "table_rotary", [0, 0, 1], -360, 360),
         "A": axis("rotary", "table_rotary", [-1, 0, 0], -120, 30, "C"),
     }
-    machine: dict[str, object] = {"name": "MCV", "manufacturer": "Dah", "units": "imperial", "axes": axes, "toolheads": [{"name": "Spindle", "max_rpm": 6000}]}
+    machine: dict[str, object] = {
+        "name": "MCV",
+        "manufacturer": "Dah",
+        "units": "imperial",
+        "axes": axes,
+        "toolheads": [{"name": "Spindle", "max_rpm": 6000}],
+    }
     machine.update(changes)
     return {"machine": machine, "postprocessor": {"file_name": "fanuc"}, "version": 1}
 
@@ -467,7 +551,9 @@ def test_units_senses_and_the_order_of_a_table(tmp_path: Path) -> None:
         (("axes",), {}, "no axes"),
     ],
 )
-def test_what_freecads_file_leaves_open_is_refused(path: tuple[str, ...], value: object, told: str, tmp_path: Path) -> None:
+def test_what_freecads_file_leaves_open_is_refused(
+    path: tuple[str, ...], value: object, told: str, tmp_path: Path
+) -> None:
     data = freecad_machine()
     at = data["machine"]
     for key in path[:-1]:

@@ -149,7 +149,11 @@ def test_a_demonstration_becomes_a_machine(name: str, tmp_path: Path) -> None:
     text = to.read_text()
     assert f'chain = "{chain}"' in text
     # Tables of tools that post itself refuses (a tool twice, columns below heads) are not what this is about.
-    to.write_text("".join(line for line in text.splitlines(True) if not line.startswith(("[tools]", "file ", "format", "units  "))))
+    to.write_text(
+        "".join(
+            line for line in text.splitlines(True) if not line.startswith(("[tools]", "file ", "format", "units  "))
+        )
+    )
     run = post("check", to)
     assert run.returncode == 0, run.stderr
 
@@ -160,7 +164,6 @@ def test_what_an_ini_file_cannot_say_is_refused_by_name(name: str, tmp_path: Pat
     assert run.returncode == 1
     assert REFUSED[name] in run.stderr and "nothing was written" in run.stderr
     assert not (tmp_path / "machine.toml").exists()
-
 
 
 def test_units_gantries_includes_and_the_narrower_limit(tmp_path: Path) -> None:
@@ -268,7 +271,9 @@ def test_warnings_of_a_good_program_stand_in_its_head(tmp_path: Path) -> None:
         ("mill.var", ("5210 0\n5211 0", "5210 1\n5211 2"), "G92.1 takes it off"),
     ],
 )
-def test_a_filter_that_is_not_set_up_says_what_helps(file: str, change: tuple[str, str], told: str, tmp_path: Path) -> None:
+def test_a_filter_that_is_not_set_up_says_what_helps(
+    file: str, change: tuple[str, str], told: str, tmp_path: Path
+) -> None:
     ini = mill(tmp_path)
     written(ini, tmp_path / "mill.toml")
     path = tmp_path / file
@@ -324,7 +329,7 @@ def stub(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
 
 def read_back(machine: Path, folder: Path, letters: str, poses: list[list[float]]) -> list[dict[str, str]]:
     """Tips and tool axes of `post` at positions of the axes: the kinematics switched off, no tool."""
-    off = ["M429"] if 'tcp_off' in machine.read_text() else []
+    off = ["M429"] if "tcp_off" in machine.read_text() else []
     words = [" ".join(f"{letter}{value:.6f}" for letter, value in zip(letters, pose, strict=True)) for pose in poses]
     program = folder / "poses.ngc"
     program.write_text("\n".join(["G21 G90 G17 G94", *off, *[f"G1 {line} F1000" for line in words], "M2", ""]))
@@ -355,7 +360,11 @@ def test_the_machine_is_that_of_the_library(ours: str, seed: int, tmp_path: Path
         """Travel, speed, acceleration and sense of each axis, without remarks."""
         tables = (table.partition("]") for table in text.split("[axis.")[1:])
         keys = ("travel", "max_feed", "max_accel", "reversed")
-        lines = ((letter, line.partition("#")[0].split()) for letter, _, table in tables for line in table.split("\n[")[0].splitlines())
+        lines = (
+            (letter, line.partition("#")[0].split())
+            for letter, _, table in tables
+            for line in table.split("\n[")[0].splitlines()
+        )
         return sorted(f"{letter} {' '.join(words)}" for letter, words in lines if words and words[0] in keys)
 
     assert limits(machine.read_text()) == limits(by_hand.read_text())
@@ -489,7 +498,10 @@ FINI
 def test_a_joint_that_swings_out_between_two_ends(trunnion: Path) -> None:
     """LinuxCNC stops in the cut (its issue 97); `post` refuses the CL file, and tells it of the program."""
     machine = trunnion.with_suffix(".toml")
-    axes = {key: f"{-math.sin(math.radians(a)):.9f},{math.cos(math.radians(a)):.9f}" for key, a in (("first", 85), ("last", 5))}
+    axes = {
+        key: f"{-math.sin(math.radians(a)):.9f},{math.cos(math.radians(a)):.9f}"
+        for key, a in (("first", 85), ("last", 5))
+    }
     part = trunnion.parent / "swing.cls"
     part.write_text(SWING_CL.format(**axes))
     run = filtered(trunnion, part)

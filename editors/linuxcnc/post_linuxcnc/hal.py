@@ -103,7 +103,9 @@ class Hal:
         component = pin.partition(".")[0]
         for place in self.unread:
             if component in place or place.endswith("cannot be read"):
-                raise Refused(f"{place}: it may set {pin}: say --set {pin}=VALUE (it is {default:g} if nothing sets it)")
+                raise Refused(
+                    f"{place}: it may set {pin}: say --set {pin}=VALUE (it is {default:g} if nothing sets it)"
+                )
         return Length(default)
 
     def _output(self, pin: str) -> Length | None:
@@ -137,9 +139,7 @@ class Hal:
 
     def _substituted(self, line: str) -> str:
         """A line with what it takes from the INI file: `[SECTION]KEY` or `[SECTION](KEY)`."""
-        return re.sub(
-            r"\[(\w+)\]\(?(\w+)\)?", lambda found: self.ini.text(found[1], found[2], found[0]), line
-        )
+        return re.sub(r"\[(\w+)\]\(?(\w+)\)?", lambda found: self.ini.text(found[1], found[2], found[0]), line)
 
 
 def _running(pin: str) -> float | None:

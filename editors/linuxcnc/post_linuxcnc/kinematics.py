@@ -120,7 +120,9 @@ def law(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
     }
     if kins.name not in makers:
         known = ", ".join(sorted(makers))
-        raise Refused(f"{kins.entry.place}: {kins.name} is not known here; known are {known}: write the machine file by hand")
+        raise Refused(
+            f"{kins.entry.place}: {kins.name} is not known here; known are {known}: write the machine file by hand"
+        )
     for pin in hal.pins:
         if pin.startswith(f"{kins.name}.") and pin.partition(".")[2] not in PINS.get(kins.name, {}):
             raise Refused(f"{kins.entry.place}: the HAL files set {pin}, which is not known here")
@@ -188,7 +190,9 @@ def _rotate(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
 
 
 # The pins of each module, and what they are worth if nothing sets them.
-TRUNNION = dict.fromkeys(("x-rot-point", "y-rot-point", "z-rot-point", "x-offset", "y-offset", "z-offset", "tool-offset"), 0.0)
+TRUNNION = dict.fromkeys(
+    ("x-rot-point", "y-rot-point", "z-rot-point", "x-offset", "y-offset", "z-offset", "tool-offset"), 0.0
+)
 PINS = {
     "xyzac-trt-kins": {**TRUNNION, "conventional-directions": 0.0},
     "xyzbc-trt-kins": {**TRUNNION, "conventional-directions": 0.0},

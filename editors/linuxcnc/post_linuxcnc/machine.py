@@ -71,7 +71,9 @@ def _axis(ini: Ini, kins: Module, letter: str, turned: RotaryAxis | None, belt: 
     for joint in kins.joints(letter):
         locking = ini.first(f"JOINT_{joint}", "LOCKING_INDEXER")
         if locking and locking.text != "0":
-            raise Refused(f"{locking.place}: an indexer that locks: describe {letter} by hand with `indexed` and `step`")
+            raise Refused(
+                f"{locking.place}: an indexer that locks: describe {letter} by hand with `indexed` and `step`"
+            )
     if scale.least > -UNLIMITED and scale.most < UNLIMITED:
         if scale.least >= scale.most:
             raise Refused(f"{ini.path}: {letter} may go from {number(scale.least)} to {number(scale.most)}: no travel")
@@ -108,7 +110,11 @@ def _belts(ini: Ini) -> list[str]:
         for key, sign in (("MIN_LIMIT", ">="), ("MAX_LIMIT", "<=")):
             bound = ini.number(f"JOINT_{joint}", key)
             if bound is not None and abs(bound) < UNLIMITED:
-                lines += ["", "[[limit]]", f'keep = "{sum_of} {sign} {number(bound * ini.millimetres())}"    # JOINT_{joint}']
+                lines += [
+                    "",
+                    "[[limit]]",
+                    f'keep = "{sum_of} {sign} {number(bound * ini.millimetres())}"    # JOINT_{joint}',
+                ]
     return lines
 
 
@@ -160,10 +166,16 @@ def machine_file(ini: Ini, said: Said, pins: dict[str, float], folder: Path, *, 
         "# Every sign is to be checked on the machine before a program runs (`post check`).",
     ]
     if law.tcp:
-        lines.append("# Travel is that of the joints. In TCP LinuxCNC holds [AXIS_...] against the words of the program besides.")
+        lines.append(
+            "# Travel is that of the joints. In TCP LinuxCNC holds [AXIS_...] against the words of the program besides."
+        )
     lines += [f"# {remark}." for remark in law.remarks]
     lines += ["", f'name  = "{name}"', f'chain = "{law.chain}"', ""]
-    lines += ["[tool]", "gauge = [0, 0, 0]                      # the frame is that of machine coordinates", "axis  = [0, 0, 1]"]
+    lines += [
+        "[tool]",
+        "gauge = [0, 0, 0]                      # the frame is that of machine coordinates",
+        "axis  = [0, 0, 1]",
+    ]
     faults: list[str] = []
     for letter, turned in [(axis.letter, axis) for axis in law.rotary] + [(letter, None) for letter in law.linear]:
         try:

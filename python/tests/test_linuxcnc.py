@@ -10,6 +10,7 @@ import ctypes
 import math
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -463,6 +464,116 @@ def test_the_interpreter_reads_what_the_filter_hands_it(trunnion: Path) -> None:
     read = real("interpret", program, "--tool", "1=30", "--metric")
     assert read.returncode == 0, read.stderr
     assert read.stdout.count("STRAIGHT_FEED") >= 18
+
+
+# The tip at Y 120, the table tilted by 60°: Y of the machine stands at 70 mm.
+HIGH_CL = """\
+UNITS/MM
+CUTTER/8
+LOADTL/1
+SPINDL/RPM,3000,CLW
+RAPID
+GOTO/0,102.680,20,0,-0.866025404,0.5
+FEDRAT/400,MMPM
+GOTO/0,120,10,0,-0.866025404,0.5
+GOTO/5,120,10,0,-0.866025404,0.5
+END
+FINI
+"""
+
+
+def test_words_that_pass_the_limits_of_the_axes_under_tcp(trunnion: Path) -> None:
+    """Joints that are inside are not all: LinuxCNC holds the tip to the axes' limits as it reads the block."""
+    part = trunnion.parent / "high.cls"
+    part.write_text(HIGH_CL)
+    posted = filtered(trunnion, part)
+    assert posted.returncode == 0, posted.stderr
+    with trunnion.open("a") as ini:
+        ini.write("\n[POST]\nMOUNT = G54\n")
+    (trunnion.parent / "xyzac.var").write_text("5221 0\n5222 0\n5223 0\n")
+    run = filtered(trunnion, part)
+    assert run.returncode == 1 and run.stdout == ""
+    assert "Y would be at 102.68 mm" in run.stderr and "[AXIS_Y] MAX_LIMIT is 100 mm" in run.stderr
+    # The joints have limits of their own.
+    ini = trunnion.read_text()
+    trunnion.write_text(re.sub(r"(\[AXIS_Y\][^\[]*MAX_LIMIT =) +100", r"\1 150", ini))
+    assert filtered(trunnion, part).returncode == 0
+
+    program = trunnion.parent / "high.ngc"
+    program.write_text(posted.stdout)
+    ran = real("run", program, "--machine", "xyzac-trt", "--tool", "1=30", "-o", trunnion.parent / "joints.csv")
+    assert ran.returncode == 1 and "exceed Y's positive limit" in ran.stderr
+
+
+SHORT_CL = """\
+UNITS/MM
+CUTTER/8
+LOADTL/1
+SPINDL/RPM,3000,CLW
+RAPID
+GOTO/20,0,30,0.5,0,0.866025404
+FEDRAT/1000,MMPM
+GOTO/15,0,5,0.5,0,0.866025404
+GOTO/10.6066,10.6066,5,0.49245,0.49245,0.71761
+GOTO/0,15,5,0,0.766044,0.642788
+END
+FINI
+"""
+
+
+def test_a_program_of_the_filter_runs_in_the_real_linuxcnc(trunnion: Path) -> None:
+    """To its end, every joint inside the limits of the INI file, the tip over the points of the CL file."""
+    part = trunnion.parent / "short.cls"
+    part.write_text(SHORT_CL)
+    run = filtered(trunnion, part)
+    assert run.returncode == 0, run.stderr
+    program = trunnion.parent / "short.ngc"
+    program.write_text(run.stdout)
+    log = trunnion.parent / "joints.csv"
+    ran = real("run", program, "--machine", "xyzac-trt", "--tool", "1=30", "--start", "Z=100", "-o", log)
+    assert ran.returncode == 0, ran.stderr
+    limits = {"X": 200, "Y": 100, "Z": 120, "A": 100, "C": 36000}
+    nearest = [math.inf] * 3
+    wanted = [(15, 0, 5), (10.6066, 10.6066, 5), (0, 15, 5)]
+    with log.open() as rows:
+        for row in csv.DictReader(rows):
+            joint = {letter: float(row[letter]) for letter in limits}
+            assert all(abs(joint[letter]) <= limits[letter] for letter in limits)
+            tip = tip_of(joint, float(row["tool_z"]))
+            nearest = [min(least, math.dist(tip, point)) for least, point in zip(nearest, wanted, strict=True)]
+    assert max(nearest) < 0.05, nearest
+
+
+def tip_of(joint: dict[str, float], tool: float) -> list[float]:
+    """The law of xyzac-trt-kins as LinuxCNC's own tests were read: the A axis 20 mm and 10 mm off the C axis."""
+    a, c = math.radians(-joint["A"]), math.radians(-joint["C"])
+    x, y, z = joint["X"], joint["Y"] - 20, joint["Z"] - tool - 10
+    y, z = y * math.cos(a) - z * math.sin(a) + 20, y * math.sin(a) + z * math.cos(a) + 10
+    return [x * math.cos(c) - y * math.sin(c), x * math.sin(c) + y * math.cos(c), z]
+
+
+SLOW = """\
+#!/usr/bin/env python3
+import sys, time
+name = next(each for each in sys.argv if each.endswith(".cls"))
+with open(name, "rb", buffering=0) as file:
+    file.read(500)
+    time.sleep(0.5)
+print("M2")
+"""
+
+
+def test_the_bar_shows_how_much_has_been_read(tmp_path: Path) -> None:
+    ini = mill(tmp_path)
+    written(ini, tmp_path / "mill.toml")
+    (tmp_path / "slow").write_text(SLOW)
+    (tmp_path / "slow").chmod(0o755)
+    ini.write_text(ini.read_text() + f"COMMAND = {tmp_path / 'slow'}\n")
+    part = tmp_path / "part.cls"
+    part.write_text("x" * 1000)
+    run = filtered(ini, part)
+    assert run.returncode == 0 and run.stdout == "M2\n"
+    assert run.stderr.splitlines() == ["FILTER_PROGRESS=49", "FILTER_PROGRESS=100"]
 
 
 # From one end to the other A turns by 80°, the tip stays where it is, and Y of the machine swings out to 110 mm between

@@ -199,6 +199,86 @@ def test_a_fault_of_an_ini_file_is_told(change: tuple[str, str], told: str, tmp_
     assert not (tmp_path / "mill.toml").exists()
 
 
+# A line of a configuration that is other, and what comes of it: a part of the machine file, or of what is told.
+TRT = f"{VISMACH}/table-rotary-tilting/xyzac-trt"
+BRIDGE = f"{VISMACH}/bridgemill/5axis"
+PARAMETERS = [
+    (TRT, "xyzac-trt.ini", "sets :y-offset     20", "sets :y-offset 12.5", [], "point     = [0, 12.5, 10]"),
+    (TRT, "xyzac-trt.ini", "y-rot-point 0", "y-rot-point 3", [], "point     = [0, 23, 10]"),
+    (TRT, "xyzac-trt.ini", "sparm=identityfirst", "", [], 'tcp_on  = "M429"'),
+    (TRT, "remap_subs/428remap.ngc", "= 1 ", "= 2 ", [], "no REMAP of [RS274NGC] sets the kinematics to 1"),
+    (
+        TRT,
+        "xyzac-trt.ini",
+        "net  :tool-offset  motion.tooloffset.z",
+        "sets :tool-offset 0",
+        [],
+        "does not hold the tool's length",
+    ),
+    (
+        TRT,
+        "xyzac-trt.ini",
+        "setp xyzac-trt-kins.x-rot-point 0",
+        "setp xyzac-trt-kins.new-pin 1",
+        [],
+        "new-pin, which is not known here",
+    ),
+    (
+        TRT,
+        "xyzac-trt.ini",
+        "setp xyzac-trt-kins.x-rot-point 0",
+        "setp xyzac-trt-kins.x-offset 1",
+        [],
+        "x-offset is set, and",
+    ),
+    (
+        BRIDGE,
+        "5axisgui.hal",
+        "loadusr -W 5axisgui\n",
+        "loadusr -W 5axisgui pivot_len=300\n",
+        [],
+        "point     = [0, 0, 300]",
+    ),
+    (BRIDGE, "5axisgui.hal", "5axisgui.pivot_len\n", "hm2.analog.0\n", [], "--set pivotsum.in0=VALUE"),
+    (
+        BRIDGE,
+        "5axisgui.hal",
+        "5axisgui.pivot_len\n",
+        "hm2.analog.0\n",
+        ["--set", "hm2.analog.0=280"],
+        "point     = [0, 0, 280]",
+    ),
+    (BRIDGE, "5axisgui.hal", "5axisgui.pivot_len\n", "hm2.analog.0\n", ["--running"], "point     = [0, 0, 333]"),
+    (BRIDGE, "5axis.ini", "HALFILE = 5axisgui.hal", "HALFILE = gone.hal", [], "gone.hal: cannot be read"),
+]
+
+
+@pytest.mark.parametrize(("name", "file", "before", "after", "said", "wanted"), PARAMETERS)
+def test_lengths_and_switches_come_from_the_hal_files(
+    name: str,
+    file: str,
+    before: str,
+    after: str,
+    said: list[str],
+    wanted: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    source = configuration(name)
+    shutil.copytree(source.parent, tmp_path / "machine")
+    changed = tmp_path / "machine" / file
+    text = changed.read_text()
+    assert before in text
+    changed.write_text(text.replace(before, after))
+    # A machine that runs, and has such a pin.
+    (tmp_path / "halcmd").write_text("#!/bin/sh\n[ \"$*\" = 'getp hm2.analog.0' ] && echo 333\n")
+    (tmp_path / "halcmd").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    run = from_ini(tmp_path / "machine" / source.name, "-o", "-", *said)
+    assert wanted in run.stdout + run.stderr
+    assert (run.returncode == 0) == (wanted in run.stdout)
+
+
 CUT = """\
 UNITS/INCHES
 CUTTER/0.394

@@ -209,6 +209,9 @@ class Course:
     def begin(self, item):
         """A new object of the job."""
         self.place = clean(getattr(item, "Label", "?"))
+        stale = [state for state in getattr(item, "State", []) if state in ("Invalid", "Touched")]
+        if stale:
+            self.refuse(f"its path is not that of the operation as it stands ({stale[-1]}): recompute the document")
         frame = placement_of(item)
         base = getattr(item, "Base", None)
         # A dressing-up of an operation on a work plane that does not say the plane itself.

@@ -190,6 +190,12 @@ def test_a_dressing_up_of_a_work_plane_without_the_plane_is_refused(processor: M
         course(processor, item("Dressup", START, Base=base))
 
 
+@pytest.mark.parametrize("state", ["Touched", "Invalid"])
+def test_a_path_that_is_not_that_of_its_operation_is_refused(state: str, processor: ModuleType) -> None:
+    with pytest.raises(processor.Refused, match=f"Op: .*{state}.*recompute"):
+        course(processor, item("Op", START, State=[state]))
+
+
 def test_words_of_rotary_axes(processor: ModuleType) -> None:
     """A quarter turn of A: what was up looks to Y, by FreeCAD's own count; ISO 841 has it the other way."""
     path: Commands = [("G0", {"A": 90.0}), ("G0", {"X": 0.0, "Y": 0.0, "Z": 10.0}), ("G1", {"Z": 4.0, "F": 1.0})]

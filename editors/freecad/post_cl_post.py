@@ -167,6 +167,7 @@ class Course:
         self.leans = False  # the tool axis of the CL file is not Z
         self.plane = 2
         self.feed = None  # as written, mm/min
+        self.path_feed = 0.0  # as the path last said, mm/s
         self.returns_high = True  # G98
         self.cycle = None
         self.waiting = []  # rapids behind a hole, which a next hole may make needless
@@ -377,8 +378,9 @@ class Course:
         self.at = at
 
     def set_feed(self, words):
-        """F of a path is mm/s; FEDRAT mm/min. Without one the job's tool controller has none, and `post` says so."""
-        feed = words.get("F", 0.0) * 60
+        """F of a path is mm/s and modal; FEDRAT is mm/min. Where a path has none `post` says so."""
+        self.path_feed = words.get("F", self.path_feed)
+        feed = self.path_feed * 60
         if feed > 0 and feed != self.feed:
             self.write(f"FEDRAT/{number(feed)},MMPM")
             self.feed = feed
@@ -423,9 +425,10 @@ class Course:
             if not words.get("F") or "S" not in words:
                 self.refuse("G84 without S and F, its speed and its pitch")
             parts.append(f"MMPR,{number(words['F'])}")  # FreeCAD's F of a tap is its pitch
-        elif words.get("F", 0.0) > 0:
-            parts.append(f"MMPM,{number(words['F'] * 60)}")
         else:
+            self.path_feed = words.get("F", self.path_feed)
+            parts.append(f"MMPM,{number(self.path_feed * 60)}")
+        if name != "G84" and self.path_feed <= 0:
             self.refuse(f"{name} without a feed: the tool controller's vertical feed is 0")
         if name in ("G83", "G73"):
             if not words.get("Q"):

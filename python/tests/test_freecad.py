@@ -7,11 +7,14 @@ one of the two is not to be had its tests are skipped and say so.
 
 import importlib.util
 import json
+import math
 import os
+import random
 import re
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -389,6 +392,117 @@ def interpreted(program: Path) -> list[list[float]]:
         if found[1] != "STRAIGHT_TRAVERSE":
             ends.append(at)
     return ends
+
+
+class Drawn:
+    """A path of random commands as FreeCAD writes it: cuts, arcs and helices in three planes, holes."""
+
+    def __init__(self, seed: int) -> None:
+        self.draw = random.Random(seed)
+        self.at = [0.0, 0.0, 20.0]
+        self.path: list[tuple[str, dict[str, float]]] = [("G0", {"Z": 20.0}), ("G0", {"X": 0.0, "Y": 0.0})]
+
+    def number(self, least: float, most: float) -> float:
+        return round(self.draw.uniform(least, most), 3)
+
+    def feed(self) -> dict[str, float]:
+        return {"F": self.draw.randint(1, 20) / 2} if self.draw.random() < 0.3 else {}
+
+    def cut(self) -> None:
+        letters = self.draw.sample("XYZ", self.draw.randint(1, 3))
+        words = {letter: self.number(-40, 40) if letter != "Z" else self.number(1, 19) for letter in letters}
+        self.path.append(("G1", {**words, **self.feed()}))
+        self.at = [words.get(letter, before) for letter, before in zip("XYZ", self.at, strict=True)]
+
+    def arc(self) -> None:
+        normal = self.draw.randrange(3)
+        u, v = (normal + 1) % 3, (normal + 2) % 3  # right-handed about the normal
+        self.path.append((("G19", "G18", "G17")[normal], {}))
+        radius = self.number(1, 8)
+        start = self.draw.uniform(0, 2 * math.pi)
+        turn = self.draw.uniform(0.2, 6) * self.draw.choice((1, -1))
+        centre = list(self.at)
+        centre[u] -= radius * math.cos(start)
+        centre[v] -= radius * math.sin(start)
+        end = list(self.at)
+        end[u] = round(centre[u] + radius * math.cos(start + turn), 6)
+        end[v] = round(centre[v] + radius * math.sin(start + turn), 6)
+        if self.draw.random() < 0.3:
+            # Gentle: a steep one may become moves.
+            end[normal] = round(end[normal] + self.number(-0.1, 0.1) * radius * abs(turn), 3)
+        offset = {"IJK"[each]: round(centre[each] - self.at[each], 6) for each in (u, v)}
+        words = dict(zip("XYZ", end, strict=True))
+        self.path.append(("G3" if turn > 0 else "G2", {**words, **offset, **self.feed()}))
+        self.at = end
+
+    def holes(self) -> None:
+        name = self.draw.choice(("G81", "G82", "G83", "G73", "G85"))
+        top, depth = self.number(3, 8), self.number(1, 12)
+        words = {"Z": round(top - depth, 3), "R": top, "F": self.draw.randint(1, 10) / 2}
+        words.update({"G82": {"P": 0.5}, "G83": {"Q": 2.5}, "G73": {"Q": 2.5}}.get(name, {}))
+        self.path += [("G0", {"Z": 20.0}), ("G17", {}), (self.draw.choice(("G98", "G99")), {})]
+        start = self.number(top, 19)
+        for _ in range(self.draw.randint(1, 4)):
+            x, y = self.number(-40, 40), self.number(-40, 40)
+            self.path += [("G0", {"X": x, "Y": y}), ("G0", {"Z": start}), (name, {"X": x, "Y": y, **words})]
+        self.path += [("G80", {}), ("G0", {"Z": 20.0})]
+        self.at = [x, y, 20.0]
+
+    def commands(self, count: int) -> Commands:
+        for _ in range(count):
+            self.draw.choice((self.cut, self.cut, self.arc, self.arc, self.holes))()
+        return self.path
+
+
+def canonical(program: Path) -> list[tuple[str, list[float]]]:
+    """The cuts that LinuxCNC's interpreter makes of a program: plane, feed, ends, centres and sense."""
+    if not (REAL / "interpret").is_file():
+        pytest.skip(f"{REAL / 'interpret'} is not here: LinuxCNC's interpreter is not asked")
+    run = subprocess.run([REAL / "interpret", program, "--tool", "1=0", "--metric"], capture_output=True, text=True)
+    if run.returncode == 3:
+        pytest.skip(f"LinuxCNC's interpreter is not to be had: {run.stderr.strip()}")
+    assert run.returncode == 0, run.stderr
+    cuts, plane, feed = [], "", 0.0
+    at: list[float] = []
+    for word, inside in re.findall(r"(\w+)\(([^)]*)\)", run.stdout):
+        if word == "SELECT_PLANE":
+            plane = inside
+        elif word == "SET_FEED_RATE":
+            feed = float(inside)
+        elif word in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED", "ARC_FEED"):
+            numbers = [float(each) for each in inside.split(",")]
+            # A way of no length is none.
+            if word == "STRAIGHT_FEED" and numbers != at:
+                cuts.append((word, [feed, *numbers]))
+            elif word == "ARC_FEED":
+                cuts.append((word + plane, [feed, *numbers]))
+            at = numbers
+        elif word == "DWELL":
+            cuts.append((word, [float(inside)]))
+    return cuts
+
+
+@pytest.mark.parametrize("round_", range(4))
+def test_the_program_does_what_the_path_says_read_as_g_code(processor: ModuleType, round_: int, tmp_path: Path) -> None:
+    """FreeCAD's commands are G-code with feeds a second: LinuxCNC's interpreter reads both, path and program."""
+    seed = int(os.environ.get("POST_SEED", time.time_ns() % 2**31)) + round_
+    print(f"again with POST_SEED={seed}")
+    path = Drawn(seed).commands(40)
+    lines = ["G21 G90 G17 G40 G49 G94 G91.1"]
+    for name, words in path:
+        scaled = {letter: value * 60 if letter == "F" else value for letter, value in words.items()}
+        lines.append(" ".join([name, *(f"{letter}{value:.6f}" for letter, value in scaled.items())]))
+    # A path has its feed from the start: FreeCAD gives one to every cut.
+    first = next(at for at, (name, _) in enumerate(path, 1) if name in ("G1", "G2", "G3") or name in processor.CYCLES)
+    lines.insert(first, "F120")
+    given = [(name, {"F": 2.0, **words}) if at == first else (name, words) for at, (name, words) in enumerate(path, 1)]
+    (tmp_path / "path.ngc").write_text("\n".join([*lines, "M2", ""]))
+    arguments = f"--machine {MACHINES / 'vmc.toml'} --command {COMMAND} --dialect linuxcnc --tool-length 100 --mount 0,0,0 --no-report --no-verify"
+    processor.export([controller(), item("Path", given)], str(tmp_path / "part.ngc"), arguments)
+    wanted, found = canonical(tmp_path / "path.ngc"), canonical(tmp_path / "part.ngc")
+    assert [word for word, _ in found] == [word for word, _ in wanted]
+    for (word, ours), (_, theirs) in zip(found, wanted, strict=True):
+        assert ours == pytest.approx(theirs, abs=2e-4), word
 
 
 def test_a_plate_of_freecad_is_the_plate_that_linuxcnc_reads(tmp_path: Path) -> None:

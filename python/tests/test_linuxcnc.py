@@ -322,6 +322,32 @@ def test_a_screen_shows_why_a_cl_file_is_refused(tmp_path: Path) -> None:
     assert filtered(ini, part).returncode == 0
 
 
+STAT = """\
+print("tool mmap not available")
+class stat:
+    g5x_index, g5x_offset, g92_offset, rotation_xy = 2, (0.0, 0.0, -4.0), (0.0,) * 9, 0.0
+    def poll(self):
+        pass
+"""
+
+
+def test_the_machine_that_runs_knows_its_offset_better_than_its_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its module talks on standard output, and none of that gets into the program."""
+    ini = mill(tmp_path)
+    written(ini, tmp_path / "mill.toml")
+    part = tmp_path / "part.cls"
+    part.write_text(CUT.format(9, 9))  # inside at G55 X0, outside at the X1.5 of the file
+    assert filtered(ini, part).returncode == 1
+    (tmp_path / "linuxcnc.py").write_text(STAT)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    run = filtered(ini, part)
+    assert run.returncode == 0 and "mmap" not in run.stdout and run.stdout.startswith("(PART)")
+    (tmp_path / "linuxcnc.py").write_text(STAT.replace("(0.0,) * 9, 0.0", "(1.0,) * 9, 0.0"))
+    assert "G92.1 takes it off" in filtered(ini, part).stderr
+
+
 def test_warnings_of_a_good_program_stand_in_its_head(tmp_path: Path) -> None:
     ini = mill(tmp_path)
     written(ini, tmp_path / "mill.toml")

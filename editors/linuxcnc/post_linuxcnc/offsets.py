@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from dataclasses import dataclass
 
 from . import Refused
@@ -35,20 +38,22 @@ def mount(ini: Ini, system: str) -> str:
     return ",".join(f"{value * ini.millimetres():.6f}" for value in offset.axes[:3])
 
 
+# Asked in a process of its own: the module writes to standard output, where the program goes.
+ASK = "import json, linuxcnc; s = linuxcnc.stat(); s.poll(); print(json.dumps([s.g5x_index, s.g5x_offset, s.g92_offset, s.rotation_xy]))"
+
+
 def _running(system: str) -> Offset | None:
     """From the LinuxCNC that runs here, which is newer than its file; it tells the system in force alone."""
     try:
-        import linuxcnc
-
-        now = linuxcnc.stat()
-        now.poll()
-    except Exception:  # not installed, or nothing runs: the file has it
+        answer = subprocess.run([sys.executable, "-c", ASK], capture_output=True, text=True, timeout=10).stdout
+        index, axes, g92, turn = json.loads(answer.splitlines()[-1])
+    except (OSError, subprocess.TimeoutExpired, IndexError, ValueError):
+        return None  # not installed, or nothing runs: the file has it
+    if SYSTEMS[index - 1] != system:
         return None
-    if SYSTEMS[now.g5x_index - 1] != system:
-        return None
-    if any(now.g92_offset):
+    if any(g92):
         raise Refused(f"[POST] MOUNT = {system}: G92 is in force besides: G92.1 takes it off")
-    return Offset(list(now.g5x_offset), now.rotation_xy)
+    return Offset(axes, turn)
 
 
 def _saved(ini: Ini, system: str) -> Offset:

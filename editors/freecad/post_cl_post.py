@@ -168,6 +168,7 @@ class Course:
         self.plane = 2
         self.feed = None  # as written, mm/min
         self.path_feed = 0.0  # as the path last said, mm/s
+        self.speed = None  # of the spindle, rev/min
         self.returns_high = True  # G98
         self.cycle = None
         self.waiting = []  # rapids behind a hole, which a next hole may make needless
@@ -280,6 +281,7 @@ class Course:
         elif name in ("M3", "M4"):
             if not words.get("S"):
                 self.refuse(f"{name} without a speed: give the tool controller one")
+            self.speed = words["S"]
             self.write(f"SPINDL/RPM,{number(words['S'])},{'CLW' if name == 'M3' else 'CCLW'}")
         elif name == "M5":
             self.write("SPINDL/OFF")
@@ -424,6 +426,8 @@ class Course:
         if name == "G84":
             if not words.get("F") or "S" not in words:
                 self.refuse("G84 without S and F, its speed and its pitch")
+            if self.speed is not None and words["S"] != self.speed:
+                self.refuse(f"G84 S{number(words['S'])}, and the spindle turns at {number(self.speed)} rev/min")
             parts.append(f"MMPR,{number(words['F'])}")  # FreeCAD's F of a tap is its pitch
         else:
             self.path_feed = words.get("F", self.path_feed)

@@ -180,6 +180,7 @@ def test_each_cycle(name: str, words: dict[str, float], said: str, processor: Mo
         ([*START, ("G81", {"X": 1.0, "Y": 0.0, "Z": 3.0, "R": 2.0, "F": 1.0})], "is not below R"),
         ([*START, hole(1, F=0.0)], "vertical feed is 0"),
         ([("M3", {})], "without a speed"),
+        ([("M3", {"S": 900.0}), *START, hole(1, "G84", S=500.0, F=1.0)], "and the spindle turns at 900 rev/min"),
     ],
 )
 def test_what_cannot_be_said_is_refused_by_its_place(commands: Commands, told: str, processor: ModuleType) -> None:
@@ -238,6 +239,21 @@ def test_program_cl_file_and_report_stand_beside_one_another(processor: ModuleTy
     # FreeCAD 1.0 and newer write the program themselves.
     again = processor.export([controller(), item("Face", START)], "-", arguments)
     assert again == text.replace("(PART)", "(JOB)")
+
+
+def test_a_tap_goes_by_its_pitch(processor: ModuleType, tmp_path: Path) -> None:
+    """1.25 mm a turn: FreeCAD's F of a tap is no feed."""
+    tap: Commands = [
+        ("G0", {"Z": 9.0}),
+        *over(1),
+        ("G84", {"X": 1.0, "Y": 0.0, "Z": -8.0, "R": 2.0, "S": 3000.0, "F": 1.25}),
+    ]
+    arguments = f"--machine {MACHINES / 'vmc.toml'} --command {COMMAND} --tool-length 100 --mount 0,0,0"
+    text = processor.export([controller(), item("Tap", [*tap, ("G80", {})])], str(tmp_path / "tap.nc"), arguments)
+    assert re.search(r"G84 .*F3750", text), text
+    arguments += " --dialect linuxcnc"
+    text = processor.export([controller(), item("Tap", [*tap, ("G80", {})])], str(tmp_path / "tap.ngc"), arguments)
+    assert re.search(r"G33\.1 .*K1\.25", text), text
 
 
 def test_a_refusal_of_post_is_the_refusal_of_the_job(processor: ModuleType, tmp_path: Path) -> None:

@@ -217,7 +217,7 @@ class Course:
         frame = placement_of(item)
         base = getattr(item, "Base", None)
         # A dressing-up of an operation on a work plane that does not say the plane itself.
-        if frame == IDENTITY and hasattr(base, "Path") and not is_identity(placement_of(base)):
+        if frame == IDENTITY and hasattr(base, "Path") and placement_of(base) != IDENTITY:
             self.refuse(
                 "it dresses up an operation on a work plane and has no plane itself: where its path stands is not known"
             )
@@ -307,9 +307,6 @@ class Course:
             self.refuse(f"the path moves {other[0]}: only X, Y, Z, A, B and C are known")
         return at, rotary
 
-    def known(self, at):
-        return all(value is not None for value in at)
-
     def move_rapid(self, words):
         at, rotary = self.target(words)
         if rotary != self.rotary and not any(letter in words for letter in AXES):
@@ -328,7 +325,7 @@ class Course:
     def rapid(self, at, rotary):
         before = (self.at, self.rotary)
         self.at, self.rotary = at, rotary
-        if not self.known(at) or (self.lines[-2:-1] == ["RAPID"] and before == (at, rotary)):
+        if None in at or (self.lines[-2:-1] == ["RAPID"] and before == (at, rotary)):
             return
         frame = self.frame_at(rotary)
         self.write("RAPID")
@@ -336,7 +333,7 @@ class Course:
 
     def cut(self, words):
         at, rotary = self.target(words)
-        if not self.known(self.at) or not self.known(at):
+        if None in self.at or None in at:
             self.refuse("a cut before the path has said where in X, Y and Z it begins")
         self.set_feed(words)
         start, start_rotary = self.at, self.rotary
@@ -361,7 +358,7 @@ class Course:
 
     def arc(self, name, words):
         at, rotary = self.target(words)
-        if not self.known(self.at) or not self.known(at):
+        if None in self.at or None in at:
             self.refuse("an arc before the path has said where in X, Y and Z it begins")
         if rotary != self.rotary:
             self.refuse(f"{name} turns a rotary axis besides")
@@ -396,7 +393,7 @@ class Course:
                 self.refuse(f"{name} without {letter}")
         if words.get("L", 1) > 1:
             self.refuse(f"{name} L{words['L']:g}: a hole that is drilled more than once")
-        if not self.known(at):
+        if None in at:
             self.refuse(f"{name} before the path has said where in X, Y and Z it begins")
         top = words["R"]
         level = self.cycle.level if self.cycle is not None and not self.waiting else self.at[2]
@@ -441,10 +438,6 @@ class Course:
         if words.get("P"):
             parts.append(f"DWELL,{number(words['P'])}")
         return ",".join(parts)
-
-
-def is_identity(frame):
-    return all(is_near(row, unit) for row, unit in zip(frame, IDENTITY))
 
 
 def numbers_of_axis(axis):

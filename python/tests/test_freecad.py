@@ -1,4 +1,4 @@
-"""FreeCAD: its post-processor file, the template of a job, and machines of its machine editor.
+"""FreeCAD: its post-processor file, and the template of a job.
 
 What the file makes of a path is tried with stand-ins of FreeCAD's objects; whole jobs are made by a script in FreeCAD
 itself, without a screen (``freecadcmd``), and their programs read by ``post verify`` and by LinuxCNC's interpreter. Where
@@ -13,13 +13,13 @@ import random
 import re
 import shutil
 import subprocess
-import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
 import pytest
+
 from conftest import CHECKOUT, COMMAND
 
 HERE = CHECKOUT / "editors/freecad"
@@ -587,117 +587,3 @@ def test_an_indexed_job_of_freecad_in_planes_of_the_control(tmp_path: Path) -> N
     made(tmp_path, "indexed", f"--machine {machine} --tool-length 60")
     text = (tmp_path / "part.ngc").read_text()
     assert "PLANE SPATIAL" in text and "CYCL DEF" in text
-
-
-# ---------------------------------------------------------------- machines
-
-
-def converted(source: Path, to: Path, *more: str) -> "subprocess.CompletedProcess[str]":
-    command = [sys.executable, HERE / "post-fcm", source, "-o", to, "--post", COMMAND, *more]
-    return subprocess.run(command, capture_output=True, text=True)
-
-
-@pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib is of Python 3.11")
-@pytest.mark.parametrize(
-    "name",
-    ["vmc", "umc-750", "xyzac-trt", "head-head", "dmu50", "bc-fork", "linuxcnc-5axis", "head-table-bc", "ac-trunnion"],
-)
-def test_a_machine_comes_back_from_freecads_file(name: str, tmp_path: Path) -> None:
-    """The law, travels and speeds, to the last digit that `post check` compares."""
-    there, back = tmp_path / f"{name}.fcm", tmp_path / f"{name}.toml"
-    run = converted(MACHINES / f"{name}.toml", there)
-    assert run.returncode == 0, run.stderr
-    run = converted(there, back, "--dialect", "linuxcnc")
-    assert run.returncode == 0, run.stderr
-    compared = subprocess.run(
-        [COMMAND, "check", back, "--nominal", MACHINES / f"{name}.toml"], capture_output=True, text=True
-    )
-    assert compared.returncode == 0, compared.stderr
-    assert (
-        "tip deviation     at most 0.00000 mm" in compared.stdout
-        and "axis deviation    at most 0.000000°" in compared.stdout
-    )
-
-    def axes(machine: Path) -> list[tuple[object, ...]]:
-        told = tmp_path / "check.json"
-        subprocess.run([COMMAND, "check", machine, "--json", told], capture_output=True, check=True)
-        found = json.loads(told.read_text())["class"]["axes"]
-        return sorted((each["name"], tuple(each["travel"] or (-36000, 36000)), each["max_feed"]) for each in found)
-
-    assert axes(back) == axes(MACHINES / f"{name}.toml")
-
-
-def freecad_machine(**changes: object) -> dict[str, object]:
-    """A mill with a table C on a trunnion A, in the form that FreeCAD 1.2 writes."""
-
-    def axis(
-        kind: str, role: str, vector: list[float], least: float, most: float, parent: str | None = None
-    ) -> dict[str, object]:
-        return {
-            "type": kind,
-            "role": role,
-            "parent": parent,
-            "sequence": 0,
-            "joint": [[0, 0, 0], vector],
-            "limits": {"min": least, "max": most},
-            "max_velocity": 600,
-        }
-
-    axes = {
-        "X": axis("linear", "table_linear", [1, 0, 0], 0, 20),
-        "Y": axis("linear", "table_linear", [0, 1, 0], 0, 14),
-        "Z": axis("linear", "head_linear", [0, 0, 1], 0, 16),
-        "C": axis("rotary", "table_rotary", [0, 0, 1], -360, 360),
-        "A": axis("rotary", "table_rotary", [-1, 0, 0], -120, 30, "C"),
-    }
-    machine: dict[str, object] = {
-        "name": "MCV",
-        "manufacturer": "Dah",
-        "units": "imperial",
-        "axes": axes,
-        "toolheads": [{"name": "Spindle", "max_rpm": 6000}],
-    }
-    machine.update(changes)
-    return {"machine": machine, "postprocessor": {"file_name": "fanuc"}, "version": 1}
-
-
-def test_units_senses_and_the_order_of_a_table(tmp_path: Path) -> None:
-    """FreeCAD turns about Z first and tilts then, whichever it calls the parent; its table angles are against ISO 841."""
-    (tmp_path / "mcv.fcm").write_text(json.dumps(freecad_machine()))
-    run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml", "--gauge", "0,0,500")
-    assert run.returncode == 0, run.stderr
-    text = (tmp_path / "mcv.toml").read_text()
-    assert "chain = \"[w C' A' Y' X' b Z (S) t]\"" in text and 'name  = "Dah MCV"' in text
-    assert "travel   = [0, 508]" in text and "max_feed = 15240" in text and "max_speed = 6000" in text
-    table = dict(part.split("\n\n")[0].split("]\n", 1) for part in text.split("[axis.")[1:])
-    assert "reversed = true" in table["C"] and "reversed" not in table["A"]
-    assert 'dialect = "fanuc"' in text and 'tcp     = "post"' in text and "gauge = [0, 0, 500]" in text
-
-
-@pytest.mark.parametrize(
-    ("path", "value", "told"),
-    [
-        (("axes", "X", "joint"), [[0, 0, 0], [0, 0, 0]], "has no length"),
-        (("axes", "X", "limits"), {"min": 5, "max": 5}, "no travel"),
-        (("axes", "A", "parent"), "Q", "its parent Q is not there"),
-        (("axes", "X", "parent"), "C", "a linear axis on a rotary one"),
-        (("toolheads",), [{"name": "Laser", "toolhead_type": "laser"}], "no spindle"),
-        (("kinematics",), {"base_frame": {"origin": [1, 0, 0]}}, "base_frame"),
-        (("units",), "cubits", "metric or imperial"),
-        (("axes",), {}, "no axes"),
-    ],
-)
-def test_what_freecads_file_leaves_open_is_refused(
-    path: tuple[str, ...], value: object, told: str, tmp_path: Path
-) -> None:
-    data = freecad_machine()
-    at = data["machine"]
-    for key in path[:-1]:
-        assert isinstance(at, dict)
-        at = at[key]
-    assert isinstance(at, dict)
-    at[path[-1]] = value
-    (tmp_path / "mcv.fcm").write_text(json.dumps(data))
-    run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml")
-    assert run.returncode == 1 and told in run.stderr
-    assert not (tmp_path / "mcv.toml").exists()

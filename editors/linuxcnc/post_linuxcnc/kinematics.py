@@ -1,7 +1,7 @@
 """Which chain of axes a kinematics module of LinuxCNC is.
 
 Each law is that of the module's source as of LinuxCNC 2.9 (`trtfuncs.c`, `5axiskins.c`, `corexykins.c`, `rotatekins.c`,
-`maxkins.c`, `scarakins.c`); `python/tests/test_linuxcnc.py` holds the chains against the modules themselves. Lengths are
+`maxkins.c`, `scarakins.c`); `python/tests/test_linuxcnc_machine.py` holds the chains against the modules themselves. Lengths are
 those of the INI file, in the frame of the joints at zero.
 """
 

@@ -67,6 +67,24 @@ int hal_pin_s32_new(const char *name, int direction, void **to, int component)
     return 0;
 }
 
+int hal_set_unready(int component) { (void)component; return 0; }
+
+int hal_pin_s32_newf(int direction, void **to, int component, const char *format, ...)
+{
+    (void)direction; (void)component;
+    *to = pin(format);
+    return 0;
+}
+
+int rtapi_snprintf(char *to, unsigned long size, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    int written = vsnprintf(to, size, format, arguments);
+    va_end(arguments);
+    return written;
+}
+
 int hal_pin_bit_newf(int direction, void **to, int component, const char *format, ...)
 {
     (void)direction; (void)component;

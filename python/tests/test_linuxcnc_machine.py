@@ -30,6 +30,8 @@ from linuxcnc_parts import (
 __all__ = ["seed"]  # a fixture
 
 
+# Signals of the dual table that its HAL files give no value.
+STANDS = [word for axis in "xyz" for word in ("--set", f"xyzab_tdr_kins.{axis}-rot-point=0")]
 # The demonstration configurations that become a machine, what is said beside them, and the chain.
 ACCEPTED = {
     "axis/axis_mm": ([], "[w b X Y Z (S) t]"),
@@ -38,6 +40,7 @@ ACCEPTED = {
     f"{VISMACH}/max5/max5triv": (["--table", "C=0,0,0", "--head", "B=0,0,60"], "[w C' b X Y Z B (S) t]"),
     f"{VISMACH}/table-rotary-tilting/xyzac-trt": ([], "[w C' A' X' Y' b Z (S) t]"),
     f"{VISMACH}/table-rotary-tilting/xyzbc-trt": ([], "[w C' B' X' Y' b Z (S) t]"),
+    f"{VISMACH}/table-dual-rotary/xyzab-tdr": (STANDS, "[w A' B' b X Y Z (S) t]"),
     f"{VISMACH}/bridgemill/5axis": ([], "[w b X Y Z C B (S) t]"),
     "axis/corexy/corexy_by_kins": ([], "[w b X Y Z (S) t]"),
 }
@@ -209,6 +212,9 @@ class Module:
             assert place is not None
             ctypes.c_void_p.from_address(place).value = ctypes.addressof(self.coordinates)
         assert self.library.rtapi_app_main() == 0
+        if name == "xyzab_tdr_kins":  # it makes its pins as it is asked for its type, and begins without TCP
+            self.library.kinematicsType()
+            assert self.library.kinematicsSwitch(1) == 0
 
     def set(self, pin: str, value: float) -> None:
         self.stub.stub_pin.restype = ctypes.POINTER(ctypes.c_double)
@@ -285,6 +291,7 @@ def test_the_machine_is_that_of_the_library(ours: str, seed: int, tmp_path: Path
 LAWS = {
     f"{VISMACH}/table-rotary-tilting/xyzac-trt": ("xyzac-trt-kins", "XYZAC", {"y-offset": 20, "z-offset": 10}),
     f"{VISMACH}/table-rotary-tilting/xyzbc-trt": ("xyzbc-trt-kins", "XYZBC", {"x-offset": -20, "z-offset": -15}),
+    f"{VISMACH}/table-dual-rotary/xyzab-tdr": ("xyzab_tdr_kins", "XYZAB", {"x-offset": -20, "z-offset": -10}),
     f"{VISMACH}/bridgemill/5axis": ("5axiskins", "XYZBC", {"pivot-length": 250}),
     "axis/corexy/corexy_by_kins": ("corexykins", "XYZ", {}),
 }
@@ -293,15 +300,16 @@ LAWS = {
 @pytest.mark.parametrize("name", LAWS)
 def test_the_law_is_that_of_the_module(name: str, stub: ctypes.CDLL, seed: int, tmp_path: Path) -> None:
     module_name, letters, pins = LAWS[name]
-    machine = written(configuration(name), tmp_path / "machine.toml")
-    coordinates = None if module_name == "corexykins" else letters.lower() + ("w" if module_name == "5axiskins" else "")
+    machine = written(configuration(name), tmp_path / "machine.toml", *ACCEPTED[name][0])
+    fixed = module_name in ("corexykins", "xyzab_tdr_kins")
+    coordinates = None if fixed else letters.lower() + ("w" if module_name == "5axiskins" else "")
     module = Module(stub, module_name, coordinates)
     draw = random.Random(seed)
     spans = {"X": 90, "Y": 90, "Z": 90, "A": 49, "B": 49, "C": 350}
     poses = [[round(draw.uniform(-spans[letter], spans[letter]), 6) for letter in letters] for _ in range(200)]
     rows = read_back(machine, tmp_path, letters, poses)
     assert len(rows) == len(poses)
-    tool = 80.0
+    tool, tool_pin = 80.0, "tool-offset-z" if module_name == "xyzab_tdr_kins" else "tool-offset"
     for pose, row in zip(poses, rows, strict=True):
         # The words of a CoreXY are X and Y, its joints their sum and difference.
         joints = [pose[0] + pose[1], pose[0] - pose[1], pose[2]] if module_name == "corexykins" else pose
@@ -315,12 +323,12 @@ def test_the_law_is_that_of_the_module(name: str, stub: ctypes.CDLL, seed: int, 
             if module_name == "5axiskins":
                 module.set("pivot-length", pins["pivot-length"] + tool)
             else:
-                module.set("tool-offset", tool)
+                module.set(tool_pin, tool)
             longer = module.tip(joints)
             longer[2] -= tool
             axis = [(short - long) / tool for short, long in zip(tip, longer, strict=True)]
             if module_name != "5axiskins":
-                module.set("tool-offset", 0)
+                module.set(tool_pin, 0)
         assert axis == pytest.approx([float(row[f"axis_{each}"]) for each in "ijk"], abs=2e-6)
         assert math.isclose(math.hypot(*axis), 1, abs_tol=1e-9)
 

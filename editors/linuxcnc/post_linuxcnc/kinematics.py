@@ -1,7 +1,7 @@
 """Which chain of axes a kinematics module of LinuxCNC is.
 
 Each law is that of the module's source as of LinuxCNC 2.9 (`trtfuncs.c`, `5axiskins.c`, `corexykins.c`, `rotatekins.c`,
-`maxkins.c`, `scarakins.c`); `python/tests/test_linuxcnc_machine.py` holds the chains against the modules themselves. Lengths are
+`maxkins.c`, `scarakins.c`, `xyzab_tdr_kins.comp`); `python/tests/test_linuxcnc_machine.py` holds the chains against the modules themselves. Lengths are
 those of the INI file, in the frame of the joints at zero.
 """
 
@@ -81,7 +81,7 @@ class Module:
 
 
 # The letters of the joints of modules that have them fixed, or take them where `coordinates=` is not said.
-LETTERS = {"xyzac-trt-kins": "XYZAC", "xyzbc-trt-kins": "XYZBC", "5axiskins": "XYZBCW"}
+LETTERS = {"xyzac-trt-kins": "XYZAC", "xyzbc-trt-kins": "XYZBC", "xyzab_tdr_kins": "XYZAB", "5axiskins": "XYZBCW"}
 
 
 def module(ini: Ini) -> Module:
@@ -116,6 +116,7 @@ def law(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
         "rotatekins": _rotate,
         "xyzac-trt-kins": _trunnion,
         "xyzbc-trt-kins": _trunnion,
+        "xyzab_tdr_kins": _dual_table,
         "5axiskins": _bridge,
     }
     if kins.name not in makers:
@@ -196,12 +197,20 @@ TRUNNION = dict.fromkeys(
 PINS = {
     "xyzac-trt-kins": {**TRUNNION, "conventional-directions": 0.0},
     "xyzbc-trt-kins": {**TRUNNION, "conventional-directions": 0.0},
+    # `x-offset` cancels out of its law.
+    "xyzab_tdr_kins": dict.fromkeys(
+        ("x-rot-point", "y-rot-point", "z-rot-point", "x-offset", "z-offset", "tool-offset-z"), 0.0
+    ),
     "5axiskins": {"pivot-length": 250.0},
 }
 
 
 def _lengths(kins: Module, hal: Hal) -> dict[str, Length]:
-    return {pin: hal.length(f"{kins.name}.{pin}", default) for pin, default in PINS[kins.name].items()}
+    found = {pin: hal.length(f"{kins.name}.{pin}", default) for pin, default in PINS[kins.name].items()}
+    moved = [pin for pin, value in found.items() if value.tool and not pin.startswith(("tool-offset", "pivot-length"))]
+    if moved:
+        raise Refused(f"{kins.entry.place}: {kins.name}.{moved[0]} changes with the tool: no chain does")
+    return found
 
 
 def _known_tool(kins: Module, pin: str, value: Length) -> None:
@@ -219,9 +228,6 @@ def _trunnion(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
     _words(ini, kins, said, have=f"XYZ{tilt}C")
     pins = _lengths(kins, hal)
     _known_tool(kins, "tool-offset", pins["tool-offset"])
-    moved = [name for name, value in pins.items() if name != "tool-offset" and value.tool]
-    if moved:
-        raise Refused(f"{kins.entry.place}: {kins.name}.{moved[0]} changes with the tool: no chain does")
     at = {name: value.constant for name, value in pins.items()}
     unused = "x-offset" if tilt == "A" else "y-offset"
     if at[unused]:
@@ -232,6 +238,18 @@ def _trunnion(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
     rotary = [RotaryAxis("C", True, centre, against), RotaryAxis(tilt, True, swing, against)]
     first = 1 if kins.arguments.get("sparm") == "identityfirst" else 0
     return _switched(ini, kins, hal, Law(f"[w C' {tilt}' X' Y' b Z (S) t]", ["X", "Y", "Z"], rotary), first)
+
+
+def _dual_table(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
+    """A on B, both in the table; they count as ISO 841 has it. A is `z-offset` above the line of B."""
+    _words(ini, kins, said, have="XYZAB")
+    pins = _lengths(kins, hal)
+    _known_tool(kins, "tool-offset-z", pins["tool-offset-z"])
+    at = {name: value.constant for name, value in pins.items()}
+    centre = (at["x-rot-point"], at["y-rot-point"], at["z-rot-point"])
+    above = (centre[0], centre[1], centre[2] + at["z-offset"])
+    rotary = [RotaryAxis("A", True, above), RotaryAxis("B", True, centre)]
+    return _switched(ini, kins, hal, Law("[w A' B' b X Y Z (S) t]", ["X", "Y", "Z"], rotary), 1)
 
 
 def _bridge(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:

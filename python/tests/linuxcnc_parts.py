@@ -38,6 +38,7 @@ MILL = """
     JOINTS = 4
     [EMCIO]
     TOOL_TABLE = tool.tbl
+    TOOL_CHANGE_POSITION = 0 0 0.4
     [RS274NGC]
     PARAMETER_FILE = mill.var
     [SPINDLE_0]

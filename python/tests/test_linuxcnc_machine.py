@@ -91,6 +91,7 @@ def test_units_gantries_includes_and_the_narrower_limit(tmp_path: Path) -> None:
     assert "max_feed  = 3048" in x and "max_accel = 508" in x  # 2 in/s of the axis, 20 in/s² of the joint
     y = text.partition("[axis.Y]")[2].partition("[axis.Z]")[0]
     assert "travel    = [-101.6, 88.9]" in y  # 3.5 in of its second joint
+    assert "# M6 goes to [EMCIO] TOOL_CHANGE_POSITION 0 0 0.4 by itself" in text
     assert 'units   = "inch"' in text and 'units  = "inch"' in text and "max_speed = 6000" in text
 
 

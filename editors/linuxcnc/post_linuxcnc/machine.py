@@ -169,6 +169,8 @@ def machine_file(ini: Ini, said: Said, pins: dict[str, float], folder: Path, *, 
         lines.append(
             "# Travel is that of the joints. In TCP LinuxCNC holds [AXIS_...] against the words of the program besides."
         )
+    if change := ini.text("EMCIO", "TOOL_CHANGE_POSITION"):
+        lines.append(f"# M6 goes to [EMCIO] TOOL_CHANGE_POSITION {change} by itself, which no program of post tells.")
     lines += [f"# {remark}." for remark in law.remarks]
     lines += ["", f'name  = "{name}"', f'chain = "{law.chain}"', ""]
     lines += [

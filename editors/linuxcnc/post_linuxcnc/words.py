@@ -40,6 +40,8 @@ def switches(machine: str) -> dict[str, str]:
 def passed(ini: Ini, program: str, machine: str, offset: list[float]) -> list[str]:
     """What is wrong with the words under TCP, once for each axis and side; `offset` is X, Y, Z of the work offset, mm."""
     codes, lengths, unit = switches(machine), tool_lengths(ini), ini.millimetres()
+    if codes["tcp_on"] not in program:
+        return []
     limits = {}
     for letter in "XYZ":
         bounds = [ini.number(f"AXIS_{letter}", key) for key in ("MIN_LIMIT", "MAX_LIMIT")]

@@ -8,7 +8,7 @@ use post_grammar::Inequality;
 use post_grammar::text::excerpt;
 
 use crate::description::{Axis, Machine};
-use crate::kinematics::{Joints, Solver, TcpBlock, Trace};
+use crate::kinematics::{Joints, Leg, Solver, TcpBlock};
 
 /// What rounding of the words may take a limit beyond its end, in its own units (mm, degrees).
 pub const ROUNDED: f64 = 1.5e-3;
@@ -23,8 +23,16 @@ const DEEPEST: u32 = 18;
 #[derive(Clone, Debug, PartialEq)]
 pub struct DependentLimit {
     text: String,
-    inequality: Inequality,
-    names: Vec<(String, Named)>,
+    rule: Rule,
+}
+
+/// What must hold.
+#[derive(Clone, Debug, PartialEq)]
+enum Rule {
+    /// An inequality, each name of which is among the names.
+    Formula(Inequality, Vec<(String, Named)>),
+    /// A leg reaches its platform, and its drive keeps to its travel.
+    Reach(Leg),
 }
 
 /// What a name in a limit stands for.
@@ -53,7 +61,20 @@ impl Named {
 impl DependentLimit {
     /// The limit `text` says, each name of which is among `names`.
     pub(crate) fn new(text: &str, inequality: Inequality, names: Vec<(String, Named)>) -> Self {
-        Self { text: excerpt(text, SHOWN).to_string(), inequality, names }
+        Self { text: excerpt(text, SHOWN).to_string(), rule: Rule::Formula(inequality, names) }
+    }
+
+    /// The limit of a leg: it reaches, and its drive keeps to its travel.
+    pub(crate) fn of_leg(leg: Leg) -> Self {
+        Self { text: leg.name.clone(), rule: Rule::Reach(leg) }
+    }
+
+    /// The leg whose limit it is.
+    pub fn leg(&self) -> Option<&Leg> {
+        match &self.rule {
+            Rule::Reach(leg) => Some(leg),
+            Rule::Formula(..) => None,
+        }
     }
 
     /// As the machine file has it, as far as messages show it.
@@ -63,15 +84,28 @@ impl DependentLimit {
 
     /// Places in the chain of the axes that it names, in the order written.
     pub fn joints(&self) -> impl Iterator<Item = usize> {
-        self.names.iter().filter_map(|(_, named)| match named {
+        let (names, leg) = match &self.rule {
+            Rule::Formula(_, names) => (names.as_slice(), None),
+            Rule::Reach(leg) => (&[][..], Some(leg.places())),
+        };
+        let named = names.iter().filter_map(|(_, named)| match named {
             Named::Axis { joint, .. } => Some(*joint),
             Named::Parameter(_) => None,
-        })
+        });
+        named.chain(leg.into_iter().flatten())
     }
 
     /// By how much it holds at `joints`, mm or degrees; below zero where it does not, no number where it has no value.
     pub fn margin(&self, joints: &Joints) -> f64 {
-        self.sides(joints).map_or(f64::NAN, |sides| self.inequality.margin(sides))
+        match &self.rule {
+            Rule::Formula(inequality, names) => {
+                let sides = inequality.sides(&|name| value(names, name, joints));
+                sides.map_or(f64::NAN, |sides| inequality.margin(sides))
+            }
+            Rule::Reach(leg) => {
+                leg.value(joints).map_or(f64::NAN, |value| drive_margin(leg, [value; 2]))
+            }
+        }
     }
 
     /// It holds at `joints`, but for rounding of the words.
@@ -79,22 +113,16 @@ impl DependentLimit {
         self.margin(joints) >= -ROUNDED
     }
 
-    fn sides(&self, joints: &Joints) -> Option<[f64; 2]> {
-        self.inequality.sides(&|name| self.value(name, joints)).ok()
-    }
-
-    fn value(&self, name: &str, joints: &Joints) -> Option<f64> {
-        let (_, named) = self.names.iter().find(|(known, _)| known == name)?;
-        Some(match *named {
-            Named::Axis { joint, unit, zero } => joints[joint] / unit + zero,
-            Named::Parameter(value) => value,
-        })
-    }
-
     /// A lower bound on the margin while each axis stays between its value in `least` and that in `most`.
     pub fn least_margin(&self, [least, most]: [&Joints; 2]) -> f64 {
-        self.inequality
-            .least_margin(&|name| Some([self.value(name, least)?, self.value(name, most)?]))
+        match &self.rule {
+            Rule::Formula(inequality, names) => inequality.least_margin(&|name| {
+                Some([value(names, name, least)?, value(names, name, most)?])
+            }),
+            Rule::Reach(leg) => {
+                leg.range([least, most]).map_or(f64::NEG_INFINITY, |range| drive_margin(leg, range))
+            }
+        }
     }
 
     /// A place at which it is passed, or not proven to hold, while each axis goes for itself between its value in `least`
@@ -140,10 +168,16 @@ impl DependentLimit {
 
     /// Way of an axis, mm or degrees.
     fn shown_way(&self, joint: usize, [least, most]: [&Joints; 2]) -> f64 {
-        let unit = self.names.iter().find_map(|(_, named)| match named {
-            Named::Axis { joint: at, unit, .. } if *at == joint => Some(*unit),
-            _ => None,
-        });
+        let unit = match &self.rule {
+            Rule::Formula(_, names) => names.iter().find_map(|(_, named)| match named {
+                Named::Axis { joint: at, unit, .. } if *at == joint => Some(*unit),
+                _ => None,
+            }),
+            Rule::Reach(leg) => {
+                let rotary = leg.joints.get(joint.wrapping_sub(leg.first));
+                rotary.filter(|joint| joint.rotary).map(|_| 1f64.to_radians())
+            }
+        };
         (most[joint] - least[joint]) / unit.unwrap_or(1.0)
     }
 
@@ -207,12 +241,7 @@ impl DependentLimit {
         ends: [&Joints; 2],
     ) -> Option<Joints> {
         let chain = solver.chain();
-        let [from, to] = ends.map(|joints| {
-            let turns = chain.turns(joints);
-            let mut trace = Trace { joints: *joints, turns, ..Trace::default() };
-            chain.trace(&mut trace);
-            trace
-        });
+        let [from, to] = ends.map(|joints| chain.traced(joints));
         let Some(kept) = TcpBlock::new(solver, along, &from, &to) else {
             return self.passed_by_each(ends);
         };
@@ -256,10 +285,14 @@ impl DependentLimit {
     /// What is wrong at `joints`: the limit, where the axes stand, both of its sides, and by how much it is passed.
     pub fn told(&self, machine: &Machine, joints: &Joints) -> String {
         let stands = self.stance(machine, joints);
-        let Some([left, right]) = self.sides(joints) else {
+        let (inequality, names) = match &self.rule {
+            Rule::Formula(inequality, names) => (inequality, names),
+            Rule::Reach(leg) => return leg_told(leg, joints, &stands),
+        };
+        let Ok([left, right]) = inequality.sides(&|name| value(names, name, joints)) else {
             return format!("[[limit]] `{}` has no value at {stands}", self.text);
         };
-        let margin = self.inequality.margin([left, right]);
+        let margin = inequality.margin([left, right]);
         if margin >= -ROUNDED {
             return format!(
                 "[[limit]] `{}` is not proven to hold beside {stands}, where {margin:.3} is left",
@@ -269,7 +302,7 @@ impl DependentLimit {
         format!(
             "[[limit]] `{}` does not hold at {stands}: {left:.3} must be {} {right:.3}, passed by {:.3}",
             self.text,
-            self.inequality.sign(),
+            inequality.sign(),
             -margin
         )
     }
@@ -278,6 +311,42 @@ impl DependentLimit {
     pub fn excess(&self, joints: &Joints) -> f64 {
         (-self.margin(joints)).max(0.0)
     }
+}
+
+/// The value of a name in a limit at `joints`.
+fn value(names: &[(String, Named)], name: &str, joints: &Joints) -> Option<f64> {
+    let (_, named) = names.iter().find(|(known, _)| known == name)?;
+    Some(match *named {
+        Named::Axis { joint, unit, zero } => joints[joint] / unit + zero,
+        Named::Parameter(value) => value,
+    })
+}
+
+/// By how much a drive that stands somewhere in a range keeps to its travel, mm or degrees.
+fn drive_margin(leg: &Leg, [least, most]: [f64; 2]) -> f64 {
+    let margin = leg.travel.map_or(f64::INFINITY, |[first, last]| (least - first).min(last - most));
+    margin / leg.unit()
+}
+
+/// What is wrong with a leg where the axes stand as `stands` says.
+fn leg_told(leg: &Leg, joints: &Joints, stands: &str) -> String {
+    let name = &leg.name;
+    let Some(value) = leg.value(joints) else {
+        return format!("[[leg]] {name} does not reach the platform at {stands}");
+    };
+    let sign = if leg.turns() { "°" } else { " mm" };
+    let shown = leg.reading(value);
+    let [least, most] = leg.travel.unwrap_or([value; 2]).map(|end| leg.reading(end));
+    let margin = drive_margin(leg, [value; 2]);
+    if margin >= -ROUNDED {
+        return format!(
+            "[[leg]] {name} is not proven to keep its travel beside {stands}, where it stands at {shown:.3}{sign}"
+        );
+    }
+    format!(
+        "[[leg]] {name} would stand at {shown:.3}{sign} at {stands}, its travel is {least:.3} to {most:.3}{sign}, passed by {:.3}{sign}",
+        -margin
+    )
 }
 
 /// Least and largest values of each axis at two places.

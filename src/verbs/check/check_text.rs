@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use post_job::summary::warnings;
 use post_job::text_table::NamedValues;
 use post_machine::check::{
-    AxisLine, AxisReadout, Check, Comparison, DifferenceShare, DirectionSolutions, LimitReport,
-    LimitRoom, MachineClass, Pole, ReachableCone, Sign, Volume, number,
+    AxisLine, AxisReadout, Check, Comparison, DifferenceShare, DirectionSolutions, LegsReport,
+    LimitReport, LimitRoom, MachineClass, Pole, ReachableCone, Sign, Volume, number,
 };
 
 /// Width of the names.
@@ -43,6 +43,9 @@ pub fn check(check: &Check) -> String {
     }
     for limit in &check.limits {
         dependent_limit(&mut rows, limit);
+    }
+    if let Some(of_machine) = &check.legs {
+        legs(&mut rows, of_machine);
     }
     if let Some(space) = &check.volume {
         volume(&mut rows, space, check.tool_length_mm);
@@ -284,6 +287,31 @@ fn dependent_limit(rows: &mut NamedValues, limit: &LimitReport) {
         };
         rows.row("", format_args!("{with}{} {room}", limit.axis));
     }
+}
+
+fn legs(rows: &mut NamedValues, of_machine: &LegsReport) {
+    for leg in &of_machine.legs {
+        let at_rest = match leg.at_rest {
+            Some(value) => format!(", at rest {} {}", number(value, 3), leg.unit),
+            None => ", out of reach at rest".to_owned(),
+        };
+        rows.row(format!("leg {}", leg.name).as_str(), format_args!("+: {}{at_rest}", leg.plus));
+        if !leg.changes.is_empty() {
+            rows.row("", format_args!("by 1 mm or degree of an axis: {}", leg.changes));
+        }
+        let ends = |ends: Option<[f64; 2]>| match ends {
+            Some([least, most]) => {
+                format!("{} to {} {}", number(least, 3), number(most, 3), leg.unit)
+            }
+            None => "nowhere".to_owned(),
+        };
+        let travel = leg.travel.map_or("without end".to_owned(), |travel| ends(Some(travel)));
+        rows.row("", format_args!("goes {} inside travel, its own is {travel}", ends(leg.room)));
+    }
+    let share = 100.0 * of_machine.share_of_travel;
+    rows.row("legs reach", format_args!("{} % of the travel of the axes", number(share, 1)));
+    rows.row("assembly", &of_machine.assembly);
+    rows.row("drives to axes", &of_machine.back);
 }
 
 fn volume(rows: &mut NamedValues, volume: &Volume, length: f64) {

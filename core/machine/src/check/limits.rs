@@ -39,7 +39,8 @@ pub struct LimitRoom {
 pub(super) fn told(probe: &Probe<'_>) -> (Vec<LimitReport>, Vec<String>) {
     let mut warnings = Vec::new();
     let limits = &probe.machine().limits;
-    let reports = limits.iter().map(|limit| report(probe, limit, &mut warnings)).collect();
+    let formulas = limits.iter().filter(|limit| limit.leg().is_none());
+    let reports = formulas.map(|limit| report(probe, limit, &mut warnings)).collect();
     (reports, warnings)
 }
 

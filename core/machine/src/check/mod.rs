@@ -8,6 +8,7 @@
 mod class;
 mod commission;
 mod leaving;
+mod legs;
 mod limits;
 mod nominal;
 mod pointing;
@@ -24,6 +25,7 @@ use serde::Serialize;
 
 pub use class::{AxisLine, MachineClass};
 pub use commission::{Commission, CommissionMove};
+pub use legs::{LegReport, LegsReport};
 pub use limits::{LimitReport, LimitRoom};
 pub use nominal::{Comparison, DifferenceShare, Differing, compare};
 pub use pointing::{AxisReadout, DirectionSolutions, Pole, Poles, WayOfPointing};
@@ -64,6 +66,9 @@ pub struct Check {
     /// What limits that depend on other axes leave of the travel.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub limits: Vec<LimitReport>,
+    /// What legs make of the axes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub legs: Option<LegsReport>,
     /// The solutions for one direction, written out.
     pub typical: Option<DirectionSolutions>,
     /// Directions that can be made in no single way.
@@ -95,6 +100,8 @@ impl Check {
         let mut warnings = warnings(&probe, &reach, volume.as_ref(), &round_trip);
         let (limits, wrong) = limits::told(&probe);
         warnings.extend(wrong);
+        let (legs, wrong) = legs::told(&probe);
+        warnings.extend(wrong);
         let typical = pointing::typical(&probe);
         let poles = Poles::of(&probe);
         Ok(Self {
@@ -114,6 +121,7 @@ impl Check {
             signs: signs::table(&probe),
             words: words::told(&probe),
             limits,
+            legs,
             typical,
             poles,
             reach,

@@ -318,6 +318,7 @@ impl Builder<'_> {
         self.servos(file, &mut axes);
         let mut limits = self.dependent_limits(&file.limit, &axes);
         let word_map = self.word_map(&file.word, &axes, &mut limits);
+        limits.extend(self.legs(&file.leg, &axes));
         let mount = file.workpiece.mount.as_ref();
         let mount = mount.map_or_else(Vector3::zeros, |mount| self.vector(mount));
         let turn = self.checked(&file.workpiece.turn).unwrap_or(0.0).to_radians();
@@ -619,9 +620,22 @@ impl Builder<'_> {
 
     /// A chain that cannot be solved is refused when the machine is loaded, not at the first cut.
     fn check_chain(&mut self, machine: &Machine, span: Range<usize>) {
-        if let Err(lack) = machine.solver(0.0) {
-            let (message, help) = lack.told(|joint| &machine.axes[joint].name);
-            self.fault("machine-chain", span, message, help);
+        match machine.solver(0.0) {
+            Err(lack) => {
+                let (message, help) = lack.told(|joint| &machine.axes[joint].name);
+                self.fault("machine-chain", span, message, help);
+            }
+            // What the control does between the words is bounded for such chains alone.
+            Ok(solver)
+                if machine.control.tcp == Tcp::Control
+                    && machine.legs().any(|leg| leg.max_feed.is_finite())
+                    && solver.linear_reach().is_infinite() =>
+            {
+                let message = "with tcp = \"control\" the feeds of legs can be held where three linear axes stand side by side in the chain, and nothing else slides";
+                let help = "write the chain of the platform so, or leave max_feed of the legs out";
+                self.fault("machine-leg", span, message.to_owned(), help);
+            }
+            Ok(_) => {}
         }
     }
 }

@@ -9,6 +9,7 @@ use serde_json::json;
 use super::bodies::{BodyFile, ClearanceFile};
 use super::bounds::Bounds;
 use super::dependent::LimitFile;
+use super::legs::LegFile;
 use super::motion::MotionFile;
 use super::plan::PlanFile;
 use super::profile::ProfileFile;
@@ -87,6 +88,8 @@ keys! {
         word: BTreeMap<Spanned<String>, Spanned<WordFile>> = AXES,
         /// Limits of axes that depend on other axes, each `[[limit]]` one.
         limit: Vec<Spanned<LimitFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
+        /// Legs that drive the platform of a parallel machine, each `[[leg]]` one.
+        leg: Vec<Spanned<LegFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
         /// STL files of the machine's bodies, for pictures and for `post clearance`; mm, machine frame, every axis at zero. An axis letter
         /// is what that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is
         /// clamped with the part, `t` a holder or head besides. A path is that from this file; an empty one takes away

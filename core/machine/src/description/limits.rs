@@ -27,6 +27,9 @@ pub(super) const MOST_OPTIONS: usize = 200;
 /// Limits that depend on other axes: each is held on every way.
 pub(super) const MOST_AXIS_LIMITS: usize = 32;
 
+/// Legs: each is held on every way.
+pub(super) const MOST_LEGS: usize = 12;
+
 /// Groups of axes that exclude one another.
 pub(super) const MOST_GROUPS: usize = 32;
 

@@ -14,6 +14,7 @@ mod file;
 mod frame;
 mod keys;
 mod layers;
+mod legs;
 mod length;
 mod limits;
 mod motion;
@@ -71,7 +72,9 @@ pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 
 use crate::dependent_limit::DependentLimit;
 use crate::diagnostic::{Diagnostic, SourcePlace};
-use crate::kinematics::{Chain, Freedom, Joint, Joints, NoClosedForm, Second, Solver};
+use crate::kinematics::{
+    Chain, Freedom, Joint, Joints, Leg, MAX_AXES, NoClosedForm, Second, Solver,
+};
 use crate::servo::Servo;
 use crate::word_map::WordMap;
 
@@ -455,6 +458,19 @@ impl Machine {
         }
         pointing.sort_unstable();
         pointing
+    }
+
+    /// The legs that drive a platform of it, in the order of the file.
+    pub fn legs(&self) -> impl Iterator<Item = &Leg> {
+        self.limits.iter().filter_map(DependentLimit::leg)
+    }
+
+    /// What is told of an axis by its place in the chain, or of a leg by [`MAX_AXES`] and its place among the legs.
+    pub fn mover(&self, place: usize) -> &str {
+        match place.checked_sub(MAX_AXES) {
+            None => self.axes.get(place).map_or("", |axis| axis.name.as_str()),
+            Some(leg) => self.legs().nth(leg).map_or("", |leg| leg.name.as_str()),
+        }
     }
 
     /// An operation whose tool axis stays (3+2) is to be written in a tilted plane of the control's: as the machine file

@@ -278,6 +278,13 @@ impl Chain {
         });
     }
 
+    /// [`Chain::trace`] of axis values.
+    pub fn traced(&self, joints: &Joints) -> Trace {
+        let mut trace = Trace { joints: *joints, turns: self.turns(joints), ..Trace::default() };
+        self.trace(&mut trace);
+        trace
+    }
+
     /// Where the tool stands when every axis is halfway between two places.
     ///
     /// The middle of an angle lies along the sum of the two unit vectors at its ends, so that no sine is evaluated.

@@ -2,6 +2,7 @@
 //! one (with three linear axes, or two), and numerically else.
 
 mod arm_bend;
+mod assembly;
 pub mod batch;
 pub mod chain;
 pub mod choose;
@@ -10,6 +11,7 @@ mod fault;
 pub mod inverse;
 mod kept_tip;
 pub mod lane_math;
+mod leg;
 mod linear;
 mod numeric;
 pub mod orientation;
@@ -17,11 +19,13 @@ mod planar;
 pub mod travel;
 mod turning_axis;
 
+pub use assembly::{Assembly, AssemblyProof};
 pub use chain::{Chain, Joint, Joints, MAX_AXES, Pose, Trace, Turns};
 pub use derivatives::{JointDerivatives, ORDERS};
 pub use fault::{NoClosedForm, POLE, Unreachable};
 pub use inverse::{Freedom, Solver};
 pub use kept_tip::{LinearMotion, TcpBlock};
+pub use leg::{AxesWay, AxisRegion, Drive, DriveBounds, Leg, least_drive_minutes};
 pub use linear::Second;
 pub use planar::{Meeting, NextSolution};
 pub use turning_axis::direction;

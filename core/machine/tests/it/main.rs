@@ -13,6 +13,7 @@ mod derivatives;
 mod freedom;
 mod kept_tip;
 mod kinematics;
+mod legs;
 mod linuxcnc;
 mod machine_file;
 mod place;

@@ -423,17 +423,21 @@ impl BlockStage<'_> {
             ..self.block(leg, &piece.node, piece.bound)
         };
         self.largest.keep(leg, piece.bound);
-        self.push_curve(block, piece.curve, out);
+        self.push_curve(leg, block, piece.curve, out);
         piece.node
     }
 
     /// Hands on a block along a curve.
     pub(super) fn push_curve(
         &self,
-        block: MotionBlock,
+        leg: &PathLeg<'_>,
+        mut block: MotionBlock,
         printed: PrintedCurve,
         out: &mut BlockSink<'_>,
     ) {
+        if self.driven {
+            self.drives_follow_curve(&mut block, leg, &printed);
+        }
         let (line, curve) = (block.line, Box::new(CurveBlock { block, printed }));
         out.push(StreamItem::Curve { line, curve });
     }

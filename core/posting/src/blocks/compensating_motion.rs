@@ -23,9 +23,9 @@ const UNSEEN: f64 = 1e-3;
 /// The least time of a block in which the linear axes keep up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FollowTime {
-    /// Minutes; zero where the control does not keep the tip, or nothing turns.
+    /// Minutes; zero where nothing has to follow.
     pub minutes: f64,
-    /// The axis that asks for it: its place in the chain.
+    /// What asks for it: the place of an axis in the chain, or [`MAX_AXES`] and the place of a leg among the legs.
     pub joint: usize,
 }
 
@@ -58,6 +58,11 @@ impl CompensatingMotion {
     pub(super) fn set(&mut self, machine: &Machine) {
         self.keeps = machine.control.tcp == Tcp::Control;
         self.slowness = machine.slowness();
+    }
+
+    /// The control keeps the tip.
+    pub(super) fn keeps(&self) -> bool {
+        self.keeps
     }
 
     /// The least value of an axis between the words, mm; infinite if nothing is known of one.

@@ -6,6 +6,7 @@ mod block;
 mod columns;
 mod compensating_motion;
 mod cutter;
+mod drives;
 mod fitted;
 mod nominal;
 mod off_part;
@@ -124,6 +125,8 @@ pub(crate) struct BlockStage<'a> {
     keeps: CurvePolicy,
     /// Feeds are planned after this stage: curves tell their way.
     plans: bool,
+    /// Legs with largest feeds drive the machine.
+    driven: bool,
     /// What each leg of the run in hand is due.
     nominal: Vec<NominalTime>,
     /// Where the tool stands; none before the first position.
@@ -177,6 +180,7 @@ impl<'a> BlockStage<'a> {
             keeps: CurvePolicy::new(machine, writes),
             by_vector: tcp && writes.has(Capabilities::TOOL_VECTOR),
             plans: false,
+            driven: machine.legs().any(|leg| leg.max_feed.is_finite()),
             nominal: Vec::new(),
             last: None,
             spare: None,
@@ -597,6 +601,10 @@ impl<'a> BlockStage<'a> {
             let (machine, asked) = (self.machine, block.asked());
             let way = (leg, [from, node]);
             block.follow = self.between.block(machine, way, asked, &self.findings);
+        }
+        if self.driven {
+            let kept = self.between.keeps();
+            self.drives_follow(&mut block, leg, [from, node], kept);
         }
         out.push(StreamItem::Point(block));
     }

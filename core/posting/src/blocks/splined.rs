@@ -76,7 +76,7 @@ impl BlockStage<'_> {
             ..self.block(&leg, &spline.node, spline.bound)
         };
         self.largest.keep(&leg, spline.bound);
-        self.push_curve(block, spline.curve, out);
+        self.push_curve(&leg, block, spline.curve, out);
         self.spare = self.last.replace(spline.node);
         self.on_part = true;
     }

@@ -29,6 +29,8 @@ pub(crate) struct Rapids {
     coordinates: [f64; 3],
     rotary: [bool; MAX_AXES],
     names: Vec<String>,
+    /// Legs drive the machine, which the control may leave out of account.
+    driven: bool,
     /// The machine's, with any tool in it, and the axis that a tool comes down by.
     down: Option<(Chain, usize)>,
     /// The tip, mm, part frame.
@@ -45,6 +47,7 @@ impl Rapids {
             coordinates: [0.0; 3],
             rotary: [false; MAX_AXES],
             names: Vec::new(),
+            driven: false,
             down: None,
             tip: Vector3::zeros(),
             found: FastRapids::default(),
@@ -68,6 +71,11 @@ impl Rapids {
             if let Some(place) = ["X", "Y", "Z"].iter().position(|name| *name == axis.name) {
                 self.coordinates[place] = self.slowness[index];
             }
+        }
+        self.driven = machine.legs().next().is_some();
+        if self.driven {
+            self.names.resize(MAX_AXES, String::new());
+            self.names.extend(machine.legs().map(|leg| leg.name.clone()));
         }
     }
 
@@ -155,14 +163,16 @@ impl Rapids {
 
     /// What the control takes that looks at the axes of the program alone, minutes.
     fn full_speed(&self, last: &Joints, block: &MotionBlock, least: f64) -> f64 {
+        let all = |index: usize| (block.joints[index] - last[index]).abs() * self.slowness[index];
         if self.tcp == Tcp::Post {
-            return least;
+            return match self.driven {
+                true => (0..MAX_AXES).map(all).fold(0.0, f64::max),
+                false => least,
+            };
         }
         let way = block.tip - self.tip;
         let linear = way.iter().zip(self.coordinates).map(|(way, slow)| way.abs() * slow);
-        let rotary = (0..MAX_AXES)
-            .filter(|index| self.rotary[*index])
-            .map(|index| (block.joints[index] - last[index]).abs() * self.slowness[index]);
+        let rotary = (0..MAX_AXES).filter(|index| self.rotary[*index]).map(all);
         linear.chain(rotary).fold(0.0, f64::max)
     }
 

@@ -6,7 +6,9 @@ use post_machine::description::{Axis, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::MAX_AXES;
 use post_machine::kinematics::travel::passed;
-use post_machine::kinematics::{Joints, LinearMotion, Solver, TcpBlock, Trace};
+use post_machine::kinematics::{
+    AxesWay, Joints, LinearMotion, Solver, TcpBlock, least_drive_minutes,
+};
 use post_machine::part_anywhere::{AxisEnds, AxisWay, needed};
 
 use crate::{Curve, Interpolation, Motion, MotionKind};
@@ -47,6 +49,8 @@ pub fn over_travel(machine: &Machine, motion: &Motion) -> Option<(String, f64)> 
 pub(crate) struct AxisLimitCheck {
     /// Minutes that each axis needs for one mm or radian.
     slowness: Joints,
+    /// Legs drive the machine, each with a largest feed.
+    driven: bool,
     /// Some axis has a largest feed.
     limited: bool,
     /// Nobody says where the part sits: the ways of the axes.
@@ -79,9 +83,11 @@ impl PartWays {
 impl AxisLimitCheck {
     pub fn new(machine: &Machine) -> Self {
         let slowness = machine.slowness();
+        let driven = machine.legs().any(|leg| leg.max_feed.is_finite());
         Self {
             slowness,
-            limited: slowness.iter().any(|slowness| *slowness > 0.0),
+            driven,
+            limited: driven || slowness.iter().any(|slowness| *slowness > 0.0),
             anywhere: machine.part_sits_anywhere().then(|| Box::new(PartWays::NONE)),
         }
     }
@@ -190,15 +196,17 @@ impl AxisLimitCheck {
         if factor <= 1.0 + SHARE {
             return None;
         }
-        let axis = &machine.axes[joint];
-        let most = axis.max_feed / axis.unit();
-        let unit = match axis.joint.rotary {
-            true => "°/min",
-            false => "mm/min",
+        let (max_feed, turns) = match joint.checked_sub(MAX_AXES) {
+            None => (machine.axes[joint].max_feed, machine.axes[joint].joint.rotary),
+            Some(place) => machine.legs().nth(place).map(|leg| (leg.max_feed, leg.turns()))?,
+        };
+        let (most, unit) = match turns {
+            true => (max_feed.to_degrees(), "°/min"),
+            false => (max_feed, "mm/min"),
         };
         let message = format!(
             "{} would go at {:.1} {unit}, and its max_feed is {most:.1}",
-            axis.name,
+            machine.mover(joint),
             most * factor
         );
         Some(AxisFault { code: "max-feed", message, by: most * (factor - 1.0) })
@@ -207,6 +215,9 @@ impl AxisLimitCheck {
     /// No axis passes its largest feed: where all go linearly as their ways tell; where the control keeps the tip as arms
     /// alone do, the speed of an axis differing from that of the whole way by half of its second derivative at most.
     fn is_slow(&self, motion: &Motion, bend: Option<f64>) -> bool {
+        if self.driven {
+            return false;
+        }
         let (from, to) = (&motion.from.joints, &motion.to.joints);
         let straight = (motion.way == Interpolation::Axes).then_some(0.0);
         let Some(bend) = straight.or(bend) else {
@@ -220,7 +231,8 @@ impl AxisLimitCheck {
 
     /// The least time in which no axis passes its largest feed, minutes, and the axis that asks for it. Where the
     /// control keeps the tip, what the linear axes do between the words is bounded from the chain, at most 0.2 % too
-    /// long; where it is less than `enough` minutes, no closer than that.
+    /// long; where it is less than `enough` minutes, no closer than that. A drive of a leg stands at [`MAX_AXES`] and its
+    /// place.
     pub fn least_minutes(
         &self,
         machine: &Machine,
@@ -257,8 +269,40 @@ impl AxisLimitCheck {
                 last = joints;
             }
         }
+        if self.driven
+            && let Some((minutes, place)) = drive_minutes(machine, motion, enough)
+        {
+            take(minutes, MAX_AXES + place);
+        }
         slowest
     }
+}
+
+/// The least time in which no drive of a leg passes its largest feed, minutes, and the place of that leg: bounded where the
+/// axes or the tip go straight, along other curves by looks at them.
+fn drive_minutes(machine: &Machine, motion: &Motion, enough: f64) -> Option<(f64, usize)> {
+    let ends = [&motion.from.joints, &motion.to.joints];
+    let turns = motion.turns();
+    let way = match &motion.way {
+        Interpolation::Axes => AxesWay::Straight,
+        Interpolation::Tip(Curve::Straight) if !turns => AxesWay::Straight,
+        Interpolation::Tip(Curve::Straight) => {
+            AxesWay::KeepingTip { solver: &motion.state.solver, along: 0.0 }
+        }
+        _ => {
+            let places: Vec<Joints> =
+                std::iter::once(motion.from.joints).chain(looked(motion)).collect();
+            let share = places.len().saturating_sub(1) as f64;
+            let pieces = places.windows(2).filter_map(|pair| {
+                let ends = [&pair[0], &pair[1]];
+                least_drive_minutes(machine.legs(), AxesWay::Straight, ends, enough / share)
+            });
+            let slowest = pieces.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            return Some((slowest.0 * share, slowest.1));
+        }
+    };
+    least_drive_minutes(machine.legs(), way, ends, enough)
+        .filter(|(minutes, _)| minutes.is_finite())
 }
 
 /// Number of places at which a curve is looked at.
@@ -353,12 +397,7 @@ fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<LinearMotio
     if !turns || motion.kind == MotionKind::Rapid && slowness.iter().any(|slow| *slow > 0.0) {
         return None;
     }
-    let trace = |joints: &Joints| {
-        let mut trace = Trace { joints: *joints, turns: chain.turns(joints), ..Trace::default() };
-        chain.trace(&mut trace);
-        trace
-    };
-    let (from, to) = (trace(&motion.from.joints), trace(&motion.to.joints));
+    let (from, to) = (chain.traced(&motion.from.joints), chain.traced(&motion.to.joints));
     TcpBlock::new(solver, 0.0, &from, &to)?.slides(slowness, enough)
 }
 

@@ -89,7 +89,7 @@ impl<C: Course> Verifier<'_, C> {
         if let Some((minutes, joint)) = least
             && !self.is_as_fast_as_rapids(motion)
         {
-            let name = &self.machine.axes[joint].name;
+            let name = self.machine.mover(joint);
             let message = "a rapid of the CL file is made slower than its axes go".to_owned();
             let share = minutes / motion.minutes * 100.0;
             let told = format!("{message}: at {share:.0} % of the max_feed of {name}");

@@ -104,7 +104,7 @@ impl<C: Course> Verifier<'_, C> {
         self.found.limited += 1;
         self.block.limited_by = Some(match limit {
             FeedLimit::Axis(joint) => {
-                Cow::Owned(format!("max_feed of {}", self.machine.axes[joint].name))
+                Cow::Owned(format!("max_feed of {}", self.machine.mover(joint)))
             }
             FeedLimit::Time => Cow::Borrowed("the largest feed by time"),
             FeedLimit::Plan => Cow::Borrowed("the planned feed"),

@@ -80,8 +80,9 @@ fn hexapod(at: V, [roll, pitch, yaw]: [f64; 3]) -> Vec<f64> {
     ends.map(|(base, platform)| (at + turn * end(platform) - end(*base)).norm()).collect()
 }
 
-/// tripodkins.
+/// tripodkins, which counts from its first joint.
 fn tripod([x, y, z]: [f64; 3]) -> Vec<f64> {
+    let (x, y) = (x + 500.0, y + 866.025 / 3.0);
     let ends = [V::zeros(), V::new(1000.0, 0.0, 0.0), V::new(500.0, 866.025, 0.0)];
     ends.map(|end| (V::new(x, y, z) - end).norm()).to_vec()
 }

@@ -82,6 +82,7 @@ mod unsaid;
 mod verbs;
 mod verified;
 mod vocabularies;
+mod ways_across;
 mod words;
 mod writable;
 mod wrong_programs;

@@ -16,7 +16,7 @@ use post_readback::interpret::Limits;
 use post_readback::verify::CutPath;
 
 use super::JobMachine;
-use super::making::{ProgramMaker, ProgramPart};
+use super::making::{ProgramInput, ProgramMaker, ProgramPart};
 use super::nc_program::{NcControl, ProgramFile};
 use super::nc_to_cl::{self, Tools};
 use super::posting_pass::PostingExtras;
@@ -187,6 +187,16 @@ impl<'a> Conversion<'a> {
         let observer = rows.as_mut().map(|rows| rows as _);
         let beside = PostingExtras { observer, ..PostingExtras::default() };
         let report = maker.write(ready, source, program, beside, &mut findings)?.report;
+        if machine.clearance.shortens_ways() {
+            let (name, text) = (program.name().to_owned(), Box::new(program.reread()?));
+            let input = ProgramInput { name, text };
+            let proven = maker.prove(&part, false, source, input, None)?;
+            let wrong = proven.is_wrong();
+            findings.extend(proven.findings);
+            if wrong {
+                return Err(findings.into());
+            }
+        }
         let (held, facts) = self.hold(source, program)?;
         findings.extend(held.findings.iter().cloned());
         if held.is_wrong() {

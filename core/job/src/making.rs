@@ -289,6 +289,7 @@ impl<'a> ProgramMaker<'a> {
         findings: &mut Vec<Diagnostic>,
     ) -> Result<ProgramOutcome, Failure> {
         let ProgramRequest { verify, clearance, predict, watch, observer, page } = wanted;
+        let clearance = clearance || part.machine.clearance.shortens_ways();
         let mut rows = match &page {
             Some(_) => Some(self.rows(part, source, predict)?),
             None => None,

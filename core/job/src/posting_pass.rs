@@ -110,12 +110,19 @@ impl PostingPass<'_> {
             true => Some(ChoiceBodies::of(machine, &mut told)?),
             false => None,
         };
+        let mut between = match machine.clearance.shortens_ways() {
+            true => Some(ChoiceBodies::of(machine, &mut Vec::new())?),
+            false => None,
+        };
         // Blocks are shown with the lines that they end on: whoever looks on waits for the text of each batch.
         let beside_text = threads > NonZeroUsize::MIN && beside.observer.is_none();
         let post = Post::new(machine, request, dialect, model, sink);
         let mut post = post.map_err(|finding| *finding)?;
         if let Some(bodies) = &mut bodies {
             post.keep_clear(bodies);
+        }
+        if let Some(bodies) = &mut between {
+            post.go_across(bodies);
         }
         if let Some(shift) = beside.shift {
             post.shift(shift);

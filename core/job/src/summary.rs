@@ -6,6 +6,7 @@ use post_grammar::text::excerpt;
 use post_posting::plan::PlanReport;
 use post_posting::report::{
     AxisRange, FastRapids, LengthSource, PluginUse, PostingReport, ReportedDeviation, ReportedTool,
+    WaysAcross,
 };
 use post_readback::verify::Verification;
 use serde::Serialize;
@@ -124,6 +125,7 @@ fn rows(rows: &mut NamedValues, found: &SummaryJson<'_>, origin: impl Fn(&Plugin
         }
     }
     rows.row_if("solutions", solutions(report));
+    rows.row_if("ways across", report.ways_across.as_ref().and_then(ways_across));
     rows.row("time", time(report));
     if let Some(plan) = &report.plan {
         rows.row("planned feed", planned(plan));
@@ -206,6 +208,17 @@ fn solutions(report: &PostingReport) -> Option<String> {
     let choices = choices.map(|(count, one, several)| counted(count, one, several));
     let choices: Vec<String> = choices.collect();
     (!choices.is_empty()).then(|| choices.join(", "))
+}
+
+/// Ways between passes that go as bodies leave them; none where there are none.
+fn ways_across(ways: &WaysAcross) -> Option<String> {
+    let kinds =
+        [(ways.low, "over a lower retract"), (ways.past, "past bodies"), (ways.as_ever, "as ever")];
+    let kinds = kinds.into_iter().filter(|(count, _)| *count > 0);
+    let kinds: Vec<String> = kinds.map(|(count, how)| format!("{count} {how}")).collect();
+    let saved = number(ways.saved_s, 1);
+    (!kinds.is_empty())
+        .then(|| format!("{}; {saved} s less than over the retract", kinds.join(", ")))
 }
 
 /// How long the program takes, and blocks that are slower than asked for.

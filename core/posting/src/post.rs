@@ -25,7 +25,7 @@ use crate::plan::{PlanStage, PlanWatch};
 use crate::preview::{FilePreview, wants_planes};
 use crate::program::{ClInterpreter, MoveFeed, ProgramStep, ReadingOptions};
 use crate::refusal;
-use crate::report::{AxisRange, PostingReport, ReportedDeviation};
+use crate::report::{AxisRange, PostingReport, ReportedDeviation, WaysAcross};
 use crate::run_stages::RunBuffers;
 use crate::shift::{PathShift, ShiftStage};
 use crate::stream::{BATCH, BatchSink, StreamItem};
@@ -286,6 +286,11 @@ impl<'a> Post<'a> {
     /// Has solutions chosen with which bodies of the machine stay clear of one another, as far as `bodies` says.
     pub fn keep_clear(&mut self, bodies: &'a mut dyn BodyClearance) {
         self.stages.configuration.keep_clear(bodies);
+    }
+
+    /// Has ways between passes go only as high as `bodies` asks for, or past them.
+    pub fn go_across(&mut self, bodies: &'a mut dyn BodyClearance) {
+        self.stages.blocks.go_across(bodies);
     }
 
     /// Takes a record.
@@ -560,6 +565,10 @@ impl<'a> Post<'a> {
             blocks_limited: durations.limited,
             blocks_capped: durations.capped,
             fast_rapids: stages.timing.rapids().found().clone(),
+            ways_across: stages
+                .blocks
+                .ways_across()
+                .map(|ways| WaysAcross { saved_s: tidy(ways.saved_s), ..ways }),
             ignored_words: self
                 .interpreter
                 .ignored()

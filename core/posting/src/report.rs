@@ -93,6 +93,9 @@ pub struct PostingReport {
     /// What the planned feed came to, if one was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub plan: Option<PlanReport>,
+    /// Ways between passes that go as bodies leave them, where that is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ways_across: Option<WaysAcross>,
     /// Warnings, as sentences.
     pub warnings: Vec<String>,
 }
@@ -108,6 +111,19 @@ pub struct FastRapids {
     pub factor: f64,
     /// Line of the CL file.
     pub line: u64,
+}
+
+/// Ways between passes of one tool, from where it departs to the next first position.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct WaysAcross {
+    /// Over a lower height than that of the machine file's retract.
+    pub low: u64,
+    /// Past bodies.
+    pub past: u64,
+    /// Over the machine file's retract: no quicker one was proven clear.
+    pub as_ever: u64,
+    /// What the others save, s, each of their pieces from rest to rest.
+    pub saved_s: f64,
 }
 
 /// A deviation and where it stands.

@@ -189,7 +189,8 @@ impl OneJob<'_> {
         let mut source = self.source();
         let mut findings = unused_options::found(&part.machine, &maker.finder);
         maker.look_ahead_where_needed(&part.machine, &mut source)?;
-        let mut text = HashedText::new(options.verify || options.clearance || options.predict);
+        let clearance = options.clearance || part.machine.clearance.shortens_ways();
+        let mut text = HashedText::new(options.verify || clearance || options.predict);
         // Results are compared: a plan that is asked for is made, whatever it gains.
         let ready = maker.prepare(part, &mut source, true)?;
         let beside = PostingExtras::default();
@@ -206,10 +207,12 @@ impl OneJob<'_> {
                 return Ok(outcome.refused(&findings));
             }
         }
-        if options.clearance {
+        if clearance {
             let program = ProgramInput { name: name.clone(), text: Box::new(self.reread(&text)) };
             let proven = maker.prove(part, made.moved, &mut source, program, None)?;
-            outcome.tell(&columns::proven(), &proven.summary());
+            if options.clearance {
+                outcome.tell(&columns::proven(), &proven.summary());
+            }
             findings.extend(proven.findings);
             if wrong(&findings) {
                 return Ok(outcome.refused(&findings));

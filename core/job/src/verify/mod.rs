@@ -132,11 +132,13 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     if let Some((map, file)) = map {
         map.end(file)?;
     }
-    let mut near = match (&texts.page, request.clearance) {
+    // Which ways across bodies leave is seen by proving it alone.
+    let clearance = request.clearance || machine.clearance.shortens_ways();
+    let mut near = match (&texts.page, clearance) {
         (Some(_), true) => Some(ClearanceRows::new()?),
         _ => None,
     };
-    let clearance = match request.clearance {
+    let clearance = match clearance {
         // It is run once more: rapids at feed are told from cuts, and what is refused of it was said.
         true => {
             let text = Box::new(program.text()?);

@@ -86,6 +86,11 @@ keys! {
         rapid_axes: RapidAxes,
         /// Of several ways to turn the axes those are taken on which bodies stay clear, where there are any.
         choose: bool = Bounds::OFF,
+        /// Between two positions of one tool it is retracted only as high as the way across is proven clear, and no program is
+        /// written that is not proven clear: the part must sit where `[workpiece] mount` says.
+        low_retracts: bool = Bounds::OFF,
+        /// As `low_retracts`, and the way across goes past bodies where that is quicker than over them.
+        link: bool = Bounds::OFF,
     }
 }
 
@@ -221,9 +226,18 @@ pub struct ClearanceRules {
     pub rapid_axes: RapidAxes,
     /// Solutions are chosen that keep bodies clear.
     pub choose: bool,
+    /// Retracts go only as high as bodies ask for.
+    pub low_retracts: bool,
+    /// Ways across go past bodies.
+    pub link: bool,
 }
 
 impl ClearanceRules {
+    /// Ways between passes are as bodies leave them: clearance is proven of every program, and holds for one mount alone.
+    pub fn shortens_ways(&self) -> bool {
+        self.low_retracts || self.link
+    }
+
     /// All pairs that are named.
     pub fn named(&self) -> impl Iterator<Item = &BodyPair> {
         self.ignore.iter().chain(self.pairs.iter().map(|pair| &pair.between))
@@ -336,6 +350,8 @@ impl Builder<'_> {
             pairs,
             rapid_axes: file.rapid_axes,
             choose: file.choose,
+            low_retracts: file.low_retracts,
+            link: file.link,
         }
     }
 

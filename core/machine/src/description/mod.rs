@@ -544,10 +544,11 @@ impl Machine {
     }
 
     /// The words of a program hold for a part on `mount` alone: they are axis positions, and a rotary axis carries the
-    /// part.
+    /// part; or ways between passes are those that bodies leave there.
     pub fn holds_on_mount_alone(&self) -> bool {
         let turns = |axis: &Axis| axis.joint.rotary && axis.carries_part;
-        self.control.tcp == Tcp::Post && self.axes.iter().any(turns)
+        let by_words = self.control.tcp == Tcp::Post && self.axes.iter().any(turns);
+        by_words || self.clearance.shortens_ways()
     }
 
     /// The words of a program hold for tools of one length alone: they are axis positions, and a head turns the tool.

@@ -48,6 +48,19 @@ impl BlockStage<'_> {
         kind: BlockKind,
         out: &mut BlockSink<'_>,
     ) {
+        self.choose_across(leg.placer, node);
+        self.come_down(leg, node, kind, out);
+        self.lowered = None;
+    }
+
+    /// From where the tool is retracted to a first position.
+    fn come_down(
+        &mut self,
+        leg: &PathLeg<'_>,
+        node: &PathNode,
+        kind: BlockKind,
+        out: &mut BlockSink<'_>,
+    ) {
         if !self.comes_from_above(leg.placer, node) {
             return self.come(leg, node, kind, out);
         }
@@ -100,7 +113,7 @@ impl BlockStage<'_> {
     /// No word moves the tool along its own line alone, as X and Y move it across: the words are those of a part that is
     /// turned, or of a plane whose Z is not the depth's word, or the tool leans, or the control begins to keep the tip
     /// with the very move. Else the words across the tool come first.
-    fn comes_from_above(&self, placer: &Placer, node: &PathNode) -> bool {
+    pub(super) fn comes_from_above(&self, placer: &Placer, node: &PathNode) -> bool {
         let machine = self.machine;
         if machine.frame.leave.is_some() {
             return true;
@@ -136,7 +149,7 @@ impl BlockStage<'_> {
     /// Where the tool comes by to `node`, from the retract on: the place farthest out on its own line from which it goes
     /// straight in. Where another axis ends its travel before that is as high as the retract, or the line wins no height,
     /// the place over it comes first. None where the tool is up there already.
-    fn stops_above(&self, placer: &Placer, node: &PathNode) -> Vec<PathNode> {
+    pub(super) fn stops_above(&self, placer: &Placer, node: &PathNode) -> Vec<PathNode> {
         if let Some(distance) = self.machine.frame.leave {
             let out = self.out_by_leave(placer, node, distance);
             return out.into_iter().map(|(out, _)| out).collect();
@@ -188,7 +201,8 @@ impl BlockStage<'_> {
         Some((out, way))
     }
 
-    /// The axis that retracts the tool; none where its position is not given.
+    /// The axis that retracts the tool, and where it does ahead of the first position in hand; none where its position is
+    /// not given.
     fn retract(&self) -> Option<RetractAxis> {
         let depth = axis_words::depth(self.base)?;
         let mut retract = self.machine.frame.retract.iter();
@@ -196,7 +210,7 @@ impl BlockStage<'_> {
         let axis = &self.machine.axes[depth];
         Some(RetractAxis {
             depth,
-            position: *position,
+            position: self.lowered.unwrap_or(*position),
             up: libm::copysign(1.0, axis.joint.direction.dot(&self.machine.tool_axis)),
         })
     }

@@ -8,6 +8,7 @@ use post_machine::kinematics::Joints;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::Feed;
 
+use super::across::WayAcross;
 use super::compensating_motion::FollowTime;
 use super::nominal::{NominalTime, STILL};
 use crate::accuracy::{DeviationBound, Placer};
@@ -86,6 +87,8 @@ pub enum BlockNote {
     Placer(Rc<Placer>),
     /// Their words are those of this tilted plane, the tool having left the part; none: of no plane.
     Plane(Option<Box<TiltedPlane>>),
+    /// The way across behind the next retract is this one.
+    Across(Box<WayAcross>),
 }
 
 /// What a planned feed leaves a block.

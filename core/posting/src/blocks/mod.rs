@@ -1,5 +1,6 @@
 //! Points whose axis values are chosen become blocks: points put in or left out, every block certified.
 
+mod across;
 mod along;
 mod approach;
 mod block;
@@ -8,6 +9,7 @@ mod compensating_motion;
 mod cutter;
 mod drives;
 mod fitted;
+mod free_way;
 mod nominal;
 mod off_part;
 mod pending_run;
@@ -33,6 +35,8 @@ use crate::observer::Observers;
 use crate::program::{Command, MoveFeed, StraightMove};
 use crate::refusal;
 use crate::stream::{BatchSink, HoleMoves, StreamItem, gathered};
+use across::AcrossChoice;
+pub use across::WayAcross;
 pub use block::{BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, PlannedTime};
 pub(crate) use compensating_motion::CompensatingMotion;
 pub use compensating_motion::FollowTime;
@@ -152,6 +156,10 @@ pub(crate) struct BlockStage<'a> {
     counts: BlockCounts,
     /// Moves have the tool's vector in the place of rotary words, and the control finds its own solution for it.
     by_vector: bool,
+    /// Chooses ways across; none: they are those of the machine file.
+    across: Option<Box<AcrossChoice<'a>>>,
+    /// Where the depth axis is retracted to ahead of the first position in hand, mm; none: as the machine file has it.
+    lowered: Option<f64>,
     /// Observers of cuts; none if nobody looks on.
     observers: Option<Rc<Observers<'a>>>,
     findings: Findings,
@@ -193,6 +201,8 @@ impl<'a> BlockStage<'a> {
             told_compensation: false,
             largest: LargestDeviations::default(),
             counts: BlockCounts::default(),
+            across: None,
+            lowered: None,
             observers: None,
             findings: findings.clone(),
         }
@@ -247,16 +257,34 @@ impl<'a> BlockStage<'a> {
 
     /// Line of the first point that waits for those after it.
     pub(crate) fn first_line(&self) -> Option<u64> {
-        self.gathered.first_line()
+        let held = self.across.as_ref().and_then(|across| across.first_line());
+        held.or_else(|| self.gathered.first_line())
     }
 
     /// Takes elements in order; none of them is solved ahead.
     pub(crate) fn take(&mut self, elements: &[StreamItem<ChosenPoint>], out: &mut BlockSink<'_>) {
+        match self.across {
+            None => self.each(elements, &mut |stage, next, lane| stage.next(next, lane, out)),
+            Some(_) => self.each(elements, &mut |stage, next, lane| {
+                let made = gathered(|out| stage.next(next, lane, out));
+                if let Some(across) = &mut stage.across {
+                    across.hand_on(next.line(), made, out);
+                }
+            }),
+        }
+    }
+
+    /// Has each element taken by `take`, which is told its place among those that were solved together.
+    fn each(
+        &mut self,
+        elements: &[StreamItem<ChosenPoint>],
+        take: &mut dyn FnMut(&mut Self, &StreamItem<ChosenPoint>, usize),
+    ) {
         let mut from = 0;
         while from < elements.len() {
             let count = self.settle_ahead(&elements[from..]);
             for (lane, next) in elements[from..from + count].iter().enumerate() {
-                self.next(next, lane, out);
+                take(self, next, lane);
             }
             from += count;
         }
@@ -310,6 +338,9 @@ impl<'a> BlockStage<'a> {
     /// The file ends: what waits is carried out.
     pub(crate) fn finish(&mut self, line: u64, out: &mut BlockSink<'_>) {
         self.end_run(out);
+        if let Some(across) = &mut self.across {
+            across.hand_on_all(line, out);
+        }
         self.depart(line, out);
     }
 
@@ -318,7 +349,7 @@ impl<'a> BlockStage<'a> {
         self.end_run(out);
         let made = hole.remade(|part| {
             gathered(|out| {
-                self.take(part, out);
+                self.each(part, &mut |stage, next, lane| stage.next(next, lane, out));
                 self.end_run(out);
             })
         });
@@ -353,6 +384,9 @@ impl<'a> BlockStage<'a> {
                 self.compensation_due = true;
             }
             _ => {}
+        }
+        if let Some(across) = &mut self.across {
+            across.command(command);
         }
         out.command(line, command.clone());
     }
@@ -416,6 +450,7 @@ impl<'a> BlockStage<'a> {
             Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
                 // An index axis turns with the tool retracted, not somewhere over the part.
                 let last = self.leave_part(leg.placer, leg.line, last, out);
+                self.departs_from(&last);
                 self.first(leg, &node, BlockKind::Reference, out);
                 self.spare = Some(last);
             }

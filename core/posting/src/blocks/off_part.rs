@@ -47,7 +47,8 @@ impl BlockStage<'_> {
     /// The tool is about to be retracted: from where it stands, if it stands anywhere.
     pub(super) fn depart(&mut self, line: u64, out: &mut BlockSink<'_>) {
         if let (Some(placer), Some(last)) = (self.placer.clone(), self.last.take()) {
-            self.leave_part(&placer, line, last, out);
+            let last = self.leave_part(&placer, line, last, out);
+            self.departs_from(&last);
         }
         self.on_part = false;
     }

@@ -41,6 +41,7 @@ use crate::findings::Findings;
 use crate::program::{Command, StraightMove, ToolChange};
 use crate::stream::{BatchSink, HoleMoves, StreamItem, StreamPoint};
 pub use clear::{BodyClearance, ClearTool, Contact, TrialWay, TrialWayKind};
+pub(crate) use cycle_time::DriveLimits;
 use lengths::LengthAxisCheck;
 use pending_element::PendingElement;
 pub(crate) use route::ChosenPoint;

@@ -53,7 +53,13 @@ impl EmitStage<'_> {
 
     /// Travel, and axis positions, are those of the part on its one mount.
     fn tell_other_mount(&mut self, line: u64, [before, number]: [u32; 2]) {
-        if self.machine.holds_on_mount_alone() {
+        if self.machine.clearance.shortens_ways() {
+            let message = format!(
+                "work offset {number} behind {before}: ways between passes are those that bodies leave with the part on its one mount ([clearance] low_retracts, link)"
+            );
+            let help = "switch them off, or post the parts one by one, each with its --mount";
+            self.findings.at(line, Diagnostic::error("work-offset", message).help(help));
+        } else if self.machine.holds_on_mount_alone() {
             self.findings.at(
                 line,
                 Diagnostic::error(

@@ -3,6 +3,7 @@
 use post_machine::axis_words::{self, AxisWords, WordValues, unit_length};
 use post_machine::description::{Machine, OutputUnits, Tcp, TextPlace};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Joints;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Capabilities, Coolant, Event, Spindle};
 
@@ -14,6 +15,9 @@ use crate::program::{MoveFeed, ToolChange};
 
 /// Full turns that an axis may stand away from its park position without a warning, degrees.
 const TURN: f64 = 360.0;
+
+/// An axis that is as near to a place stands there, mm or radians.
+const SAME: f64 = 1e-9;
 
 /// What an axis does for the tool on its way to the part.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -52,7 +56,9 @@ impl EmitStage<'_> {
         self.keep_tip(line, false);
         self.instead(line, TextPlace::Retract);
         let machine = self.machine;
-        self.go(line, &machine.frame.retract, |axes, words| Event::Retract { axes, words });
+        let low = self.across.as_ref().map(|way| [way.retract]);
+        let positions = low.as_ref().map_or(machine.frame.retract.as_slice(), |low| low);
+        self.go(line, positions, |axes, words| Event::Retract { axes, words });
         if std::mem::take(&mut self.plane.on) {
             self.writer.push(line, Event::PlaneOff);
             self.say(line, TextPlace::AfterPlane);
@@ -119,6 +125,16 @@ impl EmitStage<'_> {
             self.last[joint] = value;
         }
         self.writer.push(line, event(axes, &words[..self.writer.words()]));
+    }
+
+    /// All axes that do not stand there to a place on the way across.
+    fn go_by(&mut self, line: u64, place: &Joints) {
+        let axes = (0..self.machine.axes.len()).map(|joint| (joint, place[joint]));
+        let moved: Vec<(usize, f64)> =
+            axes.filter(|(joint, value)| libm::fabs(self.last[*joint] - value) > SAME).collect();
+        if !moved.is_empty() {
+            self.go(line, &moved, parks);
+        }
     }
 
     /// Axes to positions of the machine, the tool retracted: the rotary ones, those across the tool, and the depth last.
@@ -353,6 +369,8 @@ impl EmitStage<'_> {
         for joint in 0..self.machine.axes.len() {
             self.set_clamp(line, joint, false, true);
         }
+        let way = self.across.take();
+        way.iter().flat_map(|way| &way.through).for_each(|place| self.go_by(line, place));
         if turns {
             self.say_turned(line, TextPlace::BeforeTurn, words);
             self.writer.push(line, Event::Turn { words });

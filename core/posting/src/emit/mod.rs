@@ -20,7 +20,7 @@ use post_machine::description::{Machine, TextPlace};
 use post_machine::kinematics::Joints;
 use post_plugin::{Capabilities, Compensation, DialectSession, Event, List, ToolPose};
 
-use crate::blocks::{BlockKind, BlockNote, BlockReason, MotionBlock};
+use crate::blocks::{BlockKind, BlockNote, BlockReason, MotionBlock, WayAcross};
 use crate::curve::{CurveWords, PrintedCurve};
 use crate::findings::Findings;
 use crate::job_facts::JobFacts;
@@ -55,6 +55,8 @@ pub(crate) struct EmitStage<'a> {
     spindle: ProgramSpindle,
     coolant: CoolantState,
     plane: PlaneState,
+    /// The way across behind the next retract; none: as the machine file has it.
+    across: Option<Box<WayAcross>>,
     /// The cycle in force.
     cycle: Option<CommandedCycle>,
     cycle_words: CycleWordPlaces,
@@ -107,6 +109,7 @@ impl<'a> EmitStage<'a> {
             spindle: ProgramSpindle::default(),
             coolant: CoolantState::default(),
             plane: PlaneState::default(),
+            across: None,
             cycle: None,
             cycle_words: CycleWordPlaces::new(machine),
             tool: None,
@@ -177,6 +180,9 @@ impl<'a> EmitStage<'a> {
                 StreamItem::Note { line, note: BlockNote::Plane(plane) } => {
                     self.end_cycle(*line);
                     self.set_plane(*line, plane.clone());
+                }
+                StreamItem::Note { note: BlockNote::Across(way), .. } => {
+                    self.across = Some(way.clone());
                 }
                 StreamItem::Note { note: BlockNote::Placer(placer), .. } => {
                     self.limits.placer = Some(placer.clone());

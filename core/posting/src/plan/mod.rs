@@ -150,7 +150,7 @@ impl<'a> PlanStage<'a> {
                     self.command(command, out);
                     self.queue.push(next);
                 }
-                StreamItem::Note { note: BlockNote::Plane(_), .. } => {
+                StreamItem::Note { note: BlockNote::Plane(_) | BlockNote::Across(_), .. } => {
                     self.stop(out);
                     self.queue.push(next);
                 }

@@ -22,7 +22,8 @@ const SAME_LINE: f64 = 1e-3;
 /// positions of the machine leads as far as the machine file says. In a program that was posted for this machine file,
 /// rotary axes turn where the tool is retracted, or with the tip on a way of the course or on the line of the tool at
 /// one of its places, and other axes stand between those places only if the tool was retracted; in another program
-/// nothing is said of the other axes while one turns.
+/// nothing is said of the other axes while one turns. Of a machine whose ways between passes are those that bodies leave
+/// (`low_retracts`, `link`) nothing is said of positions of the machine, nor of where axes turn: clearance is.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
     asked: Vec<AskedPlace>,
@@ -146,7 +147,11 @@ impl Detour {
         let mut open = open.iter().enumerate().filter(|end| !goes(end));
         open.find_map(|(_, end)| {
             let poses = asked.iter().map(|asked| &asked.pose).chain(passed);
+            // Ways that bodies leave are proven, wherever axes stand and turn on them.
+            let proven = machine.clearance.shortens_ways();
             match end.turns(machine, slack) {
+                _ if proven && end.machine => None,
+                Some(_) if own && proven => None,
                 Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
                 _ if own && end.led => None,
                 _ => {
@@ -154,7 +159,7 @@ impl Detour {
                     end.astray(
                         machine,
                         &asked,
-                        !own || retracted,
+                        !own || proven || retracted,
                         RapidAllowance { axes: slack, lean },
                     )
                 }

@@ -107,6 +107,7 @@ fn the_machine(job: &SheetJob<'_>, programs: &[(&PathArg, &PostingReport)]) -> S
     row(
         "The program holds",
         match machine.holds_on_mount_alone() {
+            true if machine.clearance.shortens_ways() => "for the part origin there alone: ways between passes are those that bodies leave",
             true => "for the part origin there alone: a table turns the part, and the words are axis positions",
             false => "wherever the work offset is measured; travel was checked with the part origin there",
         }

@@ -14,6 +14,8 @@ mod arc;
 mod cycle;
 #[path = "../../../src/configuration/cycle_time.rs"]
 mod cycle_time;
+#[path = "../../../src/blocks/free_way.rs"]
+mod free_way;
 #[path = "../../../src/plan/graded.rs"]
 mod graded;
 #[path = "../../../src/program/limits.rs"]

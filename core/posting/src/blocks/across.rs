@@ -1,0 +1,423 @@
+//! The way across between two passes, from where the tool has left the part to the next first position, as bodies of the
+//! machine leave it: retracted only as high as it is proven clear, or past them.
+//!
+//! What is made from where the tool departs on is held back until the first position is known, so that the last stage knows
+//! of the way before it retracts. Ahead of a tool change, at stops, and where no shorter way is proven, the retract is that
+//! of the machine file. What is chosen here is proven once more of the program as it is written.
+
+use post_machine::axis_words::{self, unit_length};
+use post_machine::description::{Axis, Machine};
+use post_machine::kinematics::{Joints, Solver};
+
+use super::free_way::{FreeWay, Room};
+use super::{BlockNote, BlockSink, BlockStage, MotionBlock};
+use crate::accuracy::{PathNode, Placer};
+use crate::configuration::{BodyClearance, ClearTool, DriveLimits, TrialWay, TrialWayKind};
+use crate::program::{Command, ToolChange};
+use crate::report::WaysAcross;
+use crate::stream::StreamItem;
+
+/// Elements that are held back at most; of a longer pause nothing is shortened.
+const MOST_HELD: usize = 256;
+
+/// Heights that are tried besides the lowest one.
+const TRIALS: u32 = 9;
+
+/// A retract that is lower by less is not worth it, mm.
+const WORTH: f64 = 1.0;
+
+/// How far the tool is drawn back to where a way past bodies begins and ends, mm: the first that is clear.
+const DRAWN_BACK: [f64; 6] = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
+
+/// Rotary axes of a way past bodies stand on whole numbers of these, degrees.
+const TURN_STEP: f64 = 0.1;
+
+/// A way of the axes across.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WayAcross {
+    /// The depth axis, by its place in the chain, and where it stands when the tool is retracted, mm.
+    pub retract: (usize, f64),
+    /// Where the axes go then, one place after the other; the first position is come to from the last.
+    pub through: Vec<Joints>,
+}
+
+/// Chooses ways across.
+pub(super) struct AcrossChoice<'a> {
+    bodies: &'a mut dyn BodyClearance,
+    drives: DriveLimits,
+    /// Ways past bodies are looked for.
+    links: bool,
+    /// The tool in the spindle.
+    tool: Option<ToolChange>,
+    /// The tool whose bodies are in use, and its length, mm.
+    equipped: Option<(u32, f64)>,
+    /// Where the tool has departed from the part.
+    departed: Option<Joints>,
+    chosen: Option<WayAcross>,
+    held: Vec<StreamItem<MotionBlock>>,
+    found: WaysAcross,
+}
+
+/// A way that may be taken.
+struct Candidate {
+    way: WayAcross,
+    /// Where the depth axis stands over the first position, mm.
+    entry: f64,
+    /// How long the axes take from where they depart to the first position, s.
+    seconds: f64,
+}
+
+/// Whether ways are clear, for one tool.
+struct Trials<'t> {
+    bodies: &'t mut dyn BodyClearance,
+    solver: &'t Solver,
+    drives: &'t DriveLimits,
+}
+
+impl Trials<'_> {
+    fn is_clear(&mut self, from: &Joints, to: &Joints, kind: TrialWayKind) -> bool {
+        let way = TrialWay { solver: self.solver, ends: [from, to], kind };
+        self.bodies.contact(&way).is_none()
+    }
+
+    /// Off the part, as it stands: where the cut has been nothing is left to hit with the cutter.
+    fn departs(&mut self, from: &Joints, to: &Joints) -> bool {
+        from == to || self.is_clear(from, to, TrialWayKind::Rapid)
+    }
+
+    fn goes(&mut self, places: &[Joints]) -> bool {
+        let mut ways = places.windows(2).filter(|ends| ends[0] != ends[1]);
+        ways.all(|ends| self.is_clear(&ends[0], &ends[1], TrialWayKind::Turn))
+    }
+
+    /// The time of a way from rest to rest at each place, s.
+    fn seconds(&self, places: &[Joints]) -> f64 {
+        let ways = places.windows(2);
+        ways.map(|ends| self.drives.rest_to_rest(&ends[0], &ends[1], 1.0, |_| true)).sum()
+    }
+}
+
+impl<'a> AcrossChoice<'a> {
+    pub(super) fn new(machine: &Machine, bodies: &'a mut dyn BodyClearance) -> Self {
+        Self {
+            bodies,
+            drives: DriveLimits::new(machine),
+            links: machine.clearance.link,
+            tool: None,
+            equipped: None,
+            departed: None,
+            chosen: None,
+            held: Vec::new(),
+            found: WaysAcross::default(),
+        }
+    }
+
+    /// What came of it.
+    pub(super) fn found(&self) -> WaysAcross {
+        self.found
+    }
+
+    /// The tool has departed from `joints`.
+    pub(super) fn depart(&mut self, joints: &Joints) {
+        self.departed = Some(*joints);
+    }
+
+    /// Line of the first element that is held back.
+    pub(super) fn first_line(&self) -> Option<u64> {
+        self.held.first().map(StreamItem::line)
+    }
+
+    /// A command that comes by; where it asks for more than words in between, the tool is retracted as ever.
+    pub(super) fn command(&mut self, command: &Command) {
+        if let Command::Tool(tool) = command {
+            self.tool = Some(tool.clone());
+        }
+        let passes = matches!(
+            command,
+            Command::Operation(_)
+                | Command::OperationEnd
+                | Command::Comment(_)
+                | Command::Message(_)
+                | Command::Coolant(_)
+                | Command::Spindle(_)
+                | Command::Smoothing(_)
+                | Command::Index { .. }
+                | Command::Leave
+                | Command::Retract { forgets: false }
+        );
+        if !passes {
+            self.departed = None;
+        }
+    }
+
+    /// Hands on what is `made` of an element, or holds it back while the next first position is not known.
+    pub(super) fn hand_on(
+        &mut self,
+        line: u64,
+        made: Vec<StreamItem<MotionBlock>>,
+        out: &mut BlockSink<'_>,
+    ) {
+        if let Some(way) = self.chosen.take() {
+            out.note(line, BlockNote::Across(Box::new(way)));
+        } else if self.departed.is_some() && self.held.len() < MOST_HELD {
+            self.held.extend(made);
+            return;
+        }
+        self.departed = None;
+        self.held.drain(..).chain(made).for_each(|element| out.element(element));
+    }
+
+    /// The file ends: the next retract is that of the machine file.
+    pub(super) fn hand_on_all(&mut self, line: u64, out: &mut BlockSink<'_>) {
+        self.departed = None;
+        self.hand_on(line, Vec::new(), out);
+    }
+
+    /// The bodies of the tool; false where it is not known how long it is.
+    fn equip(&mut self, machine: &Machine, solver: &Solver) -> bool {
+        let length = (machine.gauge - solver.chain().tip()).dot(&machine.tool_axis);
+        let Some(tool) = self.tool.as_ref().filter(|_| length > 0.0) else {
+            return false;
+        };
+        let known = (tool.number, length);
+        if self.equipped.replace(known) != Some(known) {
+            let ToolChange { number, diameter, .. } = *tool;
+            self.bodies.equip(Some(&ClearTool { number, length: Some(length), diameter }));
+        }
+        true
+    }
+}
+
+impl<'a> BlockStage<'a> {
+    /// Has ways across go as bodies leave them.
+    pub(crate) fn go_across(&mut self, bodies: &'a mut dyn BodyClearance) {
+        self.across = Some(Box::new(AcrossChoice::new(self.machine, bodies)));
+    }
+
+    /// What came of ways across; none where they are those of the machine file.
+    pub(crate) fn ways_across(&self) -> Option<WaysAcross> {
+        self.across.as_ref().map(|across| across.found())
+    }
+
+    /// The tool has departed from where it stands at `node`.
+    pub(super) fn departs_from(&mut self, node: &PathNode) {
+        if let Some(across) = &mut self.across {
+            across.depart(&node.trace.joints);
+        }
+    }
+
+    /// Chooses the way to a first position, and how high the tool comes over it.
+    pub(super) fn choose_across(&mut self, placer: &Placer, node: &PathNode) {
+        let Some(mut across) = self.across.take() else {
+            return;
+        };
+        if let Some(from) = across.departed.take()
+            && let Some((depth, highest)) = self.shortened()
+        {
+            let best = match across.equip(self.machine, placer.solver()) {
+                true => self.way_across(&mut across, placer, (depth, highest), (&from, node)),
+                false => None,
+            };
+            match best {
+                Some(best) => {
+                    self.lowered = Some(best.entry);
+                    across.chosen = Some(best.way);
+                }
+                None => across.found.as_ever += 1,
+            }
+        }
+        self.across = Some(across);
+    }
+
+    /// The one axis that retracts the tool, and where it does, of a machine whose ways across are no others.
+    fn shortened(&self) -> Option<(usize, f64)> {
+        let machine = self.machine;
+        let [retract] = *machine.frame.retract.as_slice() else {
+            return None;
+        };
+        let plain = machine.frame.leave.is_none()
+            && machine.frame.aside.is_empty()
+            && machine.limits.is_empty()
+            && !machine.is_opened()
+            && machine.control_point.along == 0.0
+            && std::ptr::eq(machine, self.base);
+        (plain && axis_words::depth(machine) == Some(retract.0)).then_some(retract)
+    }
+
+    /// The quickest way that is proven clear, if there is one that is quicker than over the retract.
+    fn way_across(
+        &mut self,
+        across: &mut AcrossChoice<'_>,
+        placer: &Placer,
+        (depth, highest): (usize, f64),
+        (from, node): (&Joints, &PathNode),
+    ) -> Option<Candidate> {
+        let AcrossChoice { bodies, drives, links, found, .. } = across;
+        let mut trials = Trials { bodies: &mut **bodies, solver: placer.solver(), drives };
+        let ever = self.over(placer, (depth, highest), (from, node));
+        let seconds = trials.seconds(&ever);
+        let low = self.low_way(&mut trials, placer, (depth, highest), (from, node));
+        let past = match *links {
+            true => self.way_past(&mut trials, placer, (depth, highest), (from, node)),
+            false => None,
+        };
+        let quicker = |than: f64, way: Option<Candidate>| way.filter(|way| way.seconds < than);
+        let low = quicker(seconds, low);
+        let than = low.as_ref().map_or(seconds, |low| low.seconds);
+        let best = match quicker(than, past) {
+            Some(past) => {
+                found.past += 1;
+                past
+            }
+            None => {
+                found.low += u64::from(low.is_some());
+                low?
+            }
+        };
+        found.saved_s += seconds - best.seconds;
+        Some(best)
+    }
+
+    /// The places that the axes come by over the height `retract`: up, turned there, across, and down to the first position.
+    fn over(
+        &mut self,
+        placer: &Placer,
+        retract: (usize, f64),
+        (from, node): (&Joints, &PathNode),
+    ) -> Vec<Joints> {
+        let (depth, height) = retract;
+        let approach = self.approach(placer, node, retract);
+        let mut up = *from;
+        up[depth] = height;
+        let mut turned = up;
+        for (place, axis) in self.machine.axes.iter().enumerate() {
+            if axis.joint.rotary {
+                turned[place] = approach[0][place];
+            }
+        }
+        [*from, up, turned].into_iter().chain(approach).collect()
+    }
+
+    /// The places that the tool comes by to a first position from where it is retracted to `height`, that one the last.
+    fn approach(
+        &mut self,
+        placer: &Placer,
+        node: &PathNode,
+        (depth, height): (usize, f64),
+    ) -> Vec<Joints> {
+        self.lowered = Some(height);
+        let mut places: Vec<Joints> = match self.comes_from_above(placer, node) {
+            true => self.stops_above(placer, node).iter().map(|stop| stop.trace.joints).collect(),
+            false => {
+                let mut over = node.trace.joints;
+                over[depth] = height;
+                vec![over]
+            }
+        };
+        self.lowered = None;
+        places.push(node.trace.joints);
+        places
+    }
+
+    /// The lowest height that is found clear: the higher one of both ends, or by halving what is left up to the retract.
+    fn low_way(
+        &mut self,
+        trials: &mut Trials<'_>,
+        placer: &Placer,
+        (depth, highest): (usize, f64),
+        ends: (&Joints, &PathNode),
+    ) -> Option<Candidate> {
+        let up = libm::copysign(1.0, highest - ends.0[depth]);
+        let [one, other] = [ends.0[depth], ends.1.trace.joints[depth]];
+        let lowest = if up > 0.0 { one.max(other) } else { one.min(other) };
+        let step = self.step();
+        let axis = &self.machine.axes[depth];
+        let [least, most] = [lowest, highest].map(|at| axis.reading(at) * up / step);
+        // Whole steps as the control shows them, towards the retract.
+        let [mut low, mut high] = [libm::ceil(least), libm::floor(most - WORTH / step)];
+        let mut best = None;
+        let mut height = low;
+        for _ in 0..=TRIALS {
+            if high < low {
+                break;
+            }
+            let at = highest + (height * step * up - axis.reading(highest));
+            let places = self.over(placer, (depth, at), ends);
+            if trials.departs(&places[0], &places[1]) && trials.goes(&places[1..]) {
+                let way = WayAcross { retract: (depth, at), through: Vec::new() };
+                best = Some(Candidate { way, entry: at, seconds: trials.seconds(&places) });
+                high = height - 1.0;
+            } else {
+                low = height + 1.0;
+            }
+            height = libm::floor(0.5 * (low + high));
+        }
+        best
+    }
+
+    /// A way past bodies, from a little over where the tool departs to a little over the first position.
+    fn way_past(
+        &mut self,
+        trials: &mut Trials<'_>,
+        placer: &Placer,
+        (depth, highest): (usize, f64),
+        (from, node): (&Joints, &PathNode),
+    ) -> Option<Candidate> {
+        let up = libm::copysign(1.0, highest - from[depth]);
+        let drawn = |at: f64, by: f64| {
+            let back = at + up * by;
+            (up * (highest - back) >= 0.0).then_some(back)
+        };
+        let left = DRAWN_BACK.iter().find_map(|by| {
+            let height = drawn(from[depth], *by)?;
+            let mut left = *from;
+            left[depth] = height;
+            let stands = [left; 2];
+            let free = trials.is_clear(&stands[0], &stands[1], TrialWayKind::Turn);
+            (free && trials.departs(from, &left)).then_some(left)
+        })?;
+        let (entry, approach) = DRAWN_BACK.iter().find_map(|by| {
+            let height = drawn(node.trace.joints[depth], *by)?;
+            let approach = self.approach(placer, node, (depth, height));
+            (approach.len() > 1 && trials.goes(&approach)).then_some((height, approach))
+        })?;
+        let room = Room::new(self.machine, [&left, &approach[0]]);
+        let step = self.step();
+        let axes = &self.machine.axes;
+        let printed = |joints: &Joints| {
+            let mut printed = *joints;
+            for (value, axis) in printed.iter_mut().zip(axes) {
+                *value = shown(axis, *value, if axis.joint.rotary { TURN_STEP } else { step });
+            }
+            printed
+        };
+        let way = FreeWay {
+            room: &room,
+            printed: &printed,
+            seconds: &|ends| trials.drives.rest_to_rest(ends[0], ends[1], 1.0, |_| true),
+        };
+        let (bodies, solver) = (&mut *trials.bodies, trials.solver);
+        let mut clear = |from: &Joints, to: &Joints| {
+            let way = TrialWay { solver, ends: [from, to], kind: TrialWayKind::Turn };
+            bodies.contact(&way).is_none()
+        };
+        let found = way.find([&left, &approach[0]], &mut clear)?;
+        let all: Vec<Joints> =
+            [*from].iter().chain(&found).chain(&approach[1..]).copied().collect();
+        let seconds = trials.seconds(&all);
+        let way = WayAcross { retract: (depth, left[depth]), through: found[1..].to_vec() };
+        Some(Candidate { way, entry, seconds })
+    }
+
+    /// Linear axes stand on whole numbers of this, mm: a millimetre, or a twentieth of an inch.
+    fn step(&self) -> f64 {
+        let unit = unit_length(self.machine.control.units);
+        if unit > 1.0 { unit / 20.0 } else { unit }
+    }
+}
+
+/// The value of an axis nearest to `value` that it shows as a whole number of steps, mm or degrees.
+fn shown(axis: &Axis, value: f64, step: f64) -> f64 {
+    let reading = axis.reading(value);
+    value + (libm::rint(reading / step) * step - reading) * axis.unit()
+}

@@ -361,6 +361,30 @@ pub(crate) fn no_way(
     .help(help)
 }
 
+/// Why a cut of a chain with joints beyond what a pose needs (`surplus`) cannot go on, and the solution nearest to where the
+/// axes stand before.
+pub(crate) fn no_way_of_arm(
+    machine: &Machine,
+    surplus: &[usize],
+    from: &Joints,
+    nearest: Option<Joints>,
+) -> Diagnostic {
+    let names: Vec<&str> = surplus.iter().map(|joint| machine.axes[*joint].name.as_str()).collect();
+    let nearest = nearest.map_or(String::new(), |joints| {
+        format!("; the nearest solution there is {}", rotary_values(machine, &joints))
+    });
+    Diagnostic::error(
+        "jump",
+        format!(
+            "this cut cannot go on from {}: whether {} {} or gives way, the other axes do not come to its end inside their travel{nearest}",
+            rotary_values(machine, from),
+            names.join(", "),
+            if surplus.len() == 1 { "stands still" } else { "stand still" },
+        ),
+    )
+    .help("retract before this line, set the part elsewhere (--mount), or let the axes start elsewhere: [solution] start")
+}
+
 /// The machine file has text in the place of an event's, and the dialect cannot leave out what it writes for it.
 pub(crate) fn no_instead(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
     let mut texts = machine.program.texts.iter();

@@ -455,11 +455,10 @@ impl Builder<'_> {
     }
 
     fn check_edge(&mut self, file: &MachineFile, machine: &Machine) {
-        if let (Some(edge), false) = (&file.tool.edge, machine.pointing().len() == 3) {
+        if let (Some(edge), true) = (&file.tool.edge, machine.pointing().is_empty()) {
             let span = edge[0].span().start..edge[2].span().end;
-            let message =
-                "the tool has a leading edge, and there are not three rotary axes to follow it";
-            let help = "leave the edge out, or give the machine the axis that turns it";
+            let message = "the tool has a leading edge, and no rotary axis turns it";
+            let help = "leave the edge out, or give the machine the rotary axis that turns the tool about its own";
             self.fault("machine-edge", span, message.to_owned(), help);
         }
     }

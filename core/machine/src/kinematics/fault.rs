@@ -50,7 +50,7 @@ pub enum NoClosedForm {
     },
     /// The three linear directions lie in one plane.
     FlatLinearAxes,
-    /// More free rotary axes than the tool needs.
+    /// Rotary axes that no formula knows, beside a quill.
     RotaryAxes {
         /// Places of the axes in the chain.
         joints: Vec<usize>,
@@ -110,11 +110,10 @@ impl NoClosedForm {
             ),
             Self::RotaryAxes { joints } => (
                 format!(
-                    "{} rotary axes move at once ({}); at most two can be free",
-                    joints.len(),
+                    "the rotary axes {} are solved by a search, and that knows no quill (share, reserve)",
                     names(joints)
                 ),
-                "indexed = 0 holds an axis at an angle during cuts; three axes follow a tool that has an [tool] edge",
+                "indexed = 0 holds an axis during cuts: the quill, or rotary axes until two are left",
             ),
             Self::Parallel { joints: [first, second] } => (
                 format!(

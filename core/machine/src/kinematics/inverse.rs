@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 
+use super::arm::Arm;
 use super::batch::{AxisBatch, LANES, Lanes, VectorLanes};
 use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
 use super::derivatives::{self, JointDerivatives, ORDERS};
@@ -11,7 +12,7 @@ use super::linear::{Linear, Second};
 use super::numeric;
 use super::orientation::{Branches, LatitudeLanes, Orientation, RotarySet, angle};
 use super::planar::Planar;
-use super::turning_axis;
+use super::{surplus, turning_axis};
 
 /// How far a returned solution may miss the pose when it is put through the forward product: mm per metre
 /// of reach, and radians.
@@ -27,7 +28,7 @@ const MOST_SEEDS: usize = 243;
 const SAME: f64 = 1e-4;
 
 /// Settings of the axes at which the ways of the tip are counted: a single one may happen to be singular.
-const SETTINGS: [f64; 3] = [0.31, 0.57, 0.83];
+pub(super) const SETTINGS: [f64; 3] = [0.31, 0.57, 0.83];
 
 /// Which joints are solved for, and what becomes of the others.
 #[derive(Clone, Debug, Default)]
@@ -53,8 +54,9 @@ pub struct Solver {
     pub(super) tip_tolerance: f64,
 }
 
-/// How fewer than three linear axes are solved: rotary axes have to place the tip as well.
-fn few(chain: &Chain, freedom: &Freedom, quills: bool) -> Result<SolutionMethod, NoClosedForm> {
+/// How a chain is solved by a search: fewer than three linear axes, so that rotary ones have to place the tip as well, or
+/// rotary axes that no formula knows.
+fn numeric_form(chain: &Chain, freedom: &Freedom, quills: bool) -> Result<SolutionMethod, NoClosedForm> {
     let Freedom { rotary, still, held, .. } = freedom;
     let slides = |joint: &usize| !chain.joints()[*joint].rotary;
     let moves = |joint: &usize| match slides(joint) {
@@ -78,7 +80,22 @@ fn few(chain: &Chain, freedom: &Freedom, quills: bool) -> Result<SolutionMethod,
     if ways < 3 && !flat {
         return Err(NoClosedForm::FlatTip { ways });
     }
-    Ok(SolutionMethod::Numeric { linear, free, planar })
+    let surplus = match planar {
+        Some(_) => Vec::new(),
+        None => surplus::surplus(chain, &free, held),
+    };
+    let linear = linear.into_iter().filter(|joint| !surplus.contains(joint)).collect();
+    let arm = Arm::new(chain, &free).map(Box::new);
+    Ok(SolutionMethod::Numeric { linear, free, planar, surplus, arm })
+}
+
+/// No formula knows these rotary axes: more than two that point a tool which turns, or other than three of one with a
+/// leading edge.
+fn searched(chain: &Chain, rotary: &[usize]) -> bool {
+    match chain.edge() {
+        Some(_) => !rotary.is_empty() && rotary.len() != 3,
+        None => rotary.len() > 2,
+    }
 }
 
 /// The way to the solution.
@@ -94,8 +111,16 @@ pub(super) enum SolutionMethod {
         idle: u8,
         linear: Linear,
     },
-    /// All joints that move, and the linear ones among them; what solves two of these without a search.
-    Numeric { free: Vec<usize>, linear: Vec<usize>, planar: Option<Box<Planar>> },
+    /// All joints that move; the linear ones among them that place the tip; what solves two of these without a search; and
+    /// joints beyond what a pose needs.
+    Numeric {
+        free: Vec<usize>,
+        linear: Vec<usize>,
+        planar: Option<Box<Planar>>,
+        surplus: Vec<usize>,
+        /// What gives the solutions of a robot's arm by formulas.
+        arm: Option<Box<Arm>>,
+    },
 }
 
 impl Solver {
@@ -115,12 +140,18 @@ impl Solver {
     pub fn with(chain: Chain, freedom: &Freedom) -> Result<Self, NoClosedForm> {
         let held = freedom.held;
         let form = match Linear::new(&chain, &freedom.still, &freedom.seconds) {
+            Ok(_) if searched(&chain, &freedom.rotary) => {
+                if !freedom.seconds.is_empty() {
+                    return Err(NoClosedForm::RotaryAxes { joints: freedom.rotary.clone() });
+                }
+                numeric_form(&chain, freedom, false)?
+            }
             Ok(linear) => {
                 let (orientation, idle) = Orientation::new(&chain, &freedom.rotary, &held)?;
                 SolutionMethod::Closed { orientation, idle, linear }
             }
             // Rotary axes have to place the tip as well.
-            Err(NoClosedForm::FewAxes { quills, .. }) => few(&chain, freedom, quills)?,
+            Err(NoClosedForm::FewAxes { quills, .. }) => numeric_form(&chain, freedom, quills)?,
             Err(lack) => return Err(lack),
         };
         Ok(Self { chain, held, form, tip_tolerance: 0.0 })
@@ -245,7 +276,7 @@ impl Solver {
         match &self.form {
             SolutionMethod::Closed { linear, .. } => linear.place(&self.chain, tip, joints, turns),
             SolutionMethod::Numeric { linear, .. } => {
-                // There are too few of them to reach the tip alone; they make up for what they can.
+                // There may be too few of them to reach the tip alone; they make up for what they can.
                 numeric::approach(&self.chain, linear, tip, joints);
                 Ok(())
             }
@@ -367,19 +398,7 @@ impl Solver {
         if let Some(planar) = self.planar_form() {
             return self.in_plane(planar, pose, [from, from], tolerance);
         }
-        let SolutionMethod::Numeric { free, .. } = &self.form else {
-            return Err(Unreachable::Linear);
-        };
-        let mut start = self.held;
-        for joint in free {
-            start[*joint] = from[*joint];
-        }
-        let (joints, miss) = numeric::solve(&self.chain, free, pose, &start, left);
-        if self.verified(&joints, pose, tolerance.max(VERIFIED)) {
-            Ok(joints)
-        } else {
-            Err(Unreachable::Numeric { miss })
-        }
+        self.search_surplus(pose, from, tolerance, left)
     }
 
     /// For a chain without a closed form: all solutions that searches from many places find.
@@ -479,7 +498,11 @@ impl Solver {
             return Ok(ways.into_iter().map(|way| way.joints).collect());
         }
         let SolutionMethod::Closed { idle, .. } = &self.form else {
-            return self.searches(pose, last, tolerance);
+            let found = self.of_arm(pose, last, tolerance);
+            return match found.is_empty() {
+                true => self.searches(pose, last, tolerance),
+                false => Ok(found),
+            };
         };
         let mut solutions = Vec::with_capacity(2);
         let mut fault = Unreachable::Linear;
@@ -505,7 +528,7 @@ impl Solver {
     }
 
     /// The forward product of `joints` stands behind them.
-    fn verified(&self, joints: &Joints, pose: &Pose, allowed: f64) -> bool {
+    pub(super) fn verified(&self, joints: &Joints, pose: &Pose, allowed: f64) -> bool {
         let reached = self.chain.forward(joints);
         let reach =
             1000.0 + pose.tip.norm() + joints[..MAX_AXES].iter().fold(0.0, |sum, q| sum + q.abs());

@@ -1,6 +1,7 @@
 //! Kinematics, derived from the chain: forward by product of exponentials, inverse in closed form where there is
-//! one (with three linear axes, or two), and numerically else.
+//! one (with three linear axes, or two, or six rotary ones of a robot's arm), and numerically else.
 
+mod arm;
 mod arm_bend;
 mod assembly;
 pub mod batch;
@@ -16,6 +17,7 @@ mod linear;
 mod numeric;
 pub mod orientation;
 mod planar;
+mod surplus;
 pub mod travel;
 mod turning_axis;
 

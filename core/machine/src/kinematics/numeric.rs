@@ -1,10 +1,11 @@
-//! The inverse of chains without a closed form (fewer than three linear axes): Levenberg's damped Newton steps
+//! The inverse of chains without a closed form (fewer than three linear axes, or rotary axes other than the closed form
+//! knows): Levenberg's damped Newton steps
 //! from a known point, verified by the forward product.
 //!
 //! Residual: the tip (mm) and the tool axis, whose error in radians counts as an arm of [`ARM`] mm. Where the
 //! chain has more axes than the pose needs, each step is the shortest that there is.
 
-use nalgebra::{SVector, Vector3};
+use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::chain::{Chain, Joints, MAX_AXES, Pose, turn};
 
@@ -106,6 +107,13 @@ pub(super) struct Ways {
     pub of_axis_with_tip_kept: usize,
 }
 
+/// How many freedoms of the whole pose (tip, tool axis and leading edge) the free joints have, standing at `joints`.
+pub(super) fn freedoms(chain: &Chain, free: &[usize], joints: &Joints) -> usize {
+    let stand = Stand::<9>::of(chain, &Pose::default(), joints);
+    let jacobian: [[f64; MAX_AXES]; 9] = stand.jacobian(chain, free);
+    rank((0..free.len()).map(|place| Rows::from_fn(|row, _| jacobian[row][place])).collect())
+}
+
 /// A velocity is nothing where it is less than this share of the largest, or of what is left of it.
 const NOTHING: f64 = 1e-7;
 
@@ -159,7 +167,7 @@ pub(super) fn spread(free: &[usize], held: &Joints, share: f64) -> Joints {
     joints
 }
 
-/// Puts the linear joints of `linear` (fewer than three) where the tip comes closest to `tip`: least squares,
+/// Puts the linear joints of `linear` (up to three) where the tip comes closest to `tip`: least squares,
 /// exact in one step since the tip is linear in them.
 pub(super) fn approach(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joints: &mut Joints) {
     if linear.is_empty() {
@@ -185,6 +193,10 @@ pub(super) fn approach(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joint
             let (aw, bw) = (a.dot(&way), b.dot(&way));
             vec![(bb * aw - ab * bw) / determinant, (aa * bw - ab * aw) / determinant]
         }
+        [a, b, c] => match Matrix3::from_columns(&[a, b, c]).try_inverse() {
+            Some(inverse) => (inverse * way).iter().copied().collect(),
+            None => return,
+        },
         _ => return,
     };
     for (joint, value) in linear.iter().zip(values) {

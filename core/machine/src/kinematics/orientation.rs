@@ -690,7 +690,7 @@ pub fn angle(a: Vector3<f64>, b: Vector3<f64>) -> f64 {
 
 /// The angle about the unit vector `k` that turns the part of `from` across `k` into that of `to`.
 #[inline]
-fn angle_about(k: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
+pub(super) fn angle_about(k: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
     // Across k first: beside a pole little is left of either, and differences of products would lose it.
     let (from, to) = (across(k, from), across(k, to));
     libm::atan2(k.dot(&from.cross(&to)), from.dot(&to))

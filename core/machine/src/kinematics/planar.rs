@@ -388,7 +388,8 @@ impl Solver {
     }
 
     /// For a chain without a closed form: the solution between two sets of axis values, over which the way from the first
-    /// to the last is shortest; of a numeric search the one next to the first.
+    /// to the last is shortest; of a numeric search the one next to the first, or next to halfway between the two where
+    /// joints are beyond what a pose needs.
     ///
     /// # Errors
     /// By how much the nearest pose misses.
@@ -400,7 +401,12 @@ impl Solver {
     ) -> Result<Joints, Unreachable> {
         match self.planar_form() {
             Some(planar) => self.in_plane(planar, pose, ends, tolerance),
-            None => self.search(pose, ends[0], tolerance),
+            None if self.surplus().is_empty() => self.search(pose, ends[0], tolerance),
+            // The joints that stand at both ends stand between them.
+            None => {
+                let halfway = std::array::from_fn(|joint| (ends[0][joint] + ends[1][joint]) / 2.0);
+                self.search(pose, &halfway, tolerance)
+            }
         }
     }
 

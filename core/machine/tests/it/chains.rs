@@ -211,11 +211,6 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
             "A and B turn about parallel axes: they cannot point the tool",
         ),
         (
-            "[w A' B' b X Y Z C t]",
-            beside(vec![Line("A", &a, turn), Line("B", &b, turn), Line("C", &c, turn)]),
-            "3 rotary axes move at once (A, B, C); at most two can be free",
-        ),
-        (
             "[w A' B' C' b X Y Z U V W t]",
             beside(vec![
                 Line("A", &a, turn),

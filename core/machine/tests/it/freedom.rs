@@ -7,6 +7,7 @@ mod linear;
 mod measured;
 mod numeric;
 mod planar;
+mod robots;
 
 use std::f64::consts::PI;
 

@@ -17,6 +17,10 @@ pub(crate) struct TravelMeasure {
     rule: SolutionCriterion,
     count: usize,
     rotary: [bool; MAX_AXES],
+    /// Linear axes beyond what a pose needs (rails): their way counts as a turn on an arm of [`ARM`].
+    rails: Vec<usize>,
+    /// Axes are beyond what a pose needs.
+    surplus: bool,
     /// Minutes for one mm or radian at the largest feed.
     slowness: Joints,
     prefer: Vec<(usize, Side)>,
@@ -29,8 +33,11 @@ pub(crate) struct TravelMeasure {
 /// Share of the time of a move that is added to the other measures: it decides between ways that are equal in them.
 const TIE: f64 = 1e-6;
 
+/// mm that a radian counts as beside the way of a rail.
+pub(super) const ARM: f64 = 300.0;
+
 impl TravelMeasure {
-    pub(crate) fn new(machine: &Machine) -> Self {
+    pub(crate) fn new(machine: &Machine, surplus: &[usize]) -> Self {
         let mut slowness = [0.0; MAX_AXES];
         let mut rotary = [false; MAX_AXES];
         let mut zero = [0.0; MAX_AXES];
@@ -46,6 +53,8 @@ impl TravelMeasure {
         Self {
             rule: machine.solution.rule,
             count: machine.axes.len(),
+            rails: surplus.iter().copied().filter(|place| !rotary[*place]).collect(),
+            surplus: !surplus.is_empty(),
             rotary,
             slowness,
             prefer: machine.solution.prefer.clone(),
@@ -53,6 +62,11 @@ impl TravelMeasure {
             drives: (machine.solution.rule == SolutionCriterion::CycleTime)
                 .then(|| Box::new(DriveLimits::new(machine))),
         }
+    }
+
+    /// Axes are beyond what a pose needs.
+    pub(super) fn has_surplus(&self) -> bool {
+        self.surplus
     }
 
     /// What the time is made of, under the rule `cycle-time`.
@@ -106,6 +120,11 @@ impl TravelMeasure {
                 continue;
             }
             time += way * self.slowness[index];
+        }
+        for rail in &self.rails {
+            let way = (to[*rail] - from[*rail]) / ARM;
+            squares += way * way;
+            largest = largest.max(way.abs());
         }
         let tie = TIE * time;
         match self.rule {

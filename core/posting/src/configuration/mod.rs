@@ -18,6 +18,7 @@ mod recovery;
 mod route;
 mod settle;
 mod solution;
+mod surplus;
 mod taut;
 mod tool_length;
 mod trellis;

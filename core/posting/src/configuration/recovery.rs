@@ -294,6 +294,13 @@ impl Route<'_> {
         if solved.is_err() || stands.is_empty() {
             return self.over_travel(found);
         }
+        if !placer.solver().surplus().is_empty() {
+            let carried = stands.iter().filter_map(|stand| axes.carried(stand, &from.joints).ok());
+            let turn = |joints: &Joints| axes.largest_turn(&from.joints, joints);
+            let nearest = carried.min_by(|a, b| turn(a).total_cmp(&turn(b)));
+            let surplus = placer.solver().surplus();
+            return refusal::no_way_of_arm(self.machine, surplus, &from.joints, nearest).boxed();
+        }
         let tried: Vec<_> = stands
             .iter()
             .map(|stand| {

@@ -221,7 +221,8 @@ impl Route<'_> {
 impl Trellis {
     /// Did the path take another branch or another full turn?
     fn has_changed(&self, (a, before): (u8, &Joints), (b, after): (u8, &Joints)) -> bool {
-        (a != b && a != HELD && b != HELD)
+        // Where joints are beyond what a pose needs, a branch is none of the inverse.
+        (a != b && a != HELD && b != HELD && !self.measure.has_surplus())
             || self.axes.largest_turn(before, after) > std::f64::consts::PI + SAME
     }
 }

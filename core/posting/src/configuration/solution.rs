@@ -30,7 +30,7 @@ pub(crate) struct ChoiceAxes {
     pub(super) endless: u8,
     /// Off the part axes without travel may be turned the longer way round as well.
     pub(super) both_ways: bool,
-    linear: Vec<RotaryTravel>,
+    pub(super) linear: Vec<RotaryTravel>,
     /// What must hold between the axes.
     limits: Vec<DependentLimit>,
     /// Joints that move off the part alone.
@@ -203,7 +203,7 @@ impl ChoiceAxes {
     }
 
     /// Keeps what fails least of two solutions: a length, which mount and tool may mend, before an angle.
-    fn keep_least(&self, kept: &mut Option<OverTravel>, over: OverTravel) {
+    pub(super) fn keep_least(&self, kept: &mut Option<OverTravel>, over: OverTravel) {
         let by = |over: &OverTravel| {
             let angle = self.linear.iter().all(|limit| limit.joint != over.joint);
             (angle, libm::fabs(over.value - over.limit))
@@ -227,6 +227,9 @@ impl ChoiceAxes {
         going: &dyn Fn(&Branches) -> [bool; 2],
         stands: &mut Vec<AxisSolution>,
     ) -> Result<SolutionSummary, Unreachable> {
+        if !solver.surplus().is_empty() {
+            return self.surplus_stands(solver, pose, last, stands);
+        }
         if !solver.closed_form() {
             return self.searched(solver, pose, last, stands);
         }
@@ -337,7 +340,7 @@ impl ChoiceAxes {
 
     /// Brings angles onto the positions of index axes, and checks that every axis can stand there at all.
     #[inline]
-    fn at_rest(&self, joints: &mut Joints) -> Result<(), OverTravel> {
+    pub(super) fn at_rest(&self, joints: &mut Joints) -> Result<(), OverTravel> {
         for axis in &self.turning {
             let joint = axis.joint;
             if let Some(positions) = &axis.positions {
@@ -396,7 +399,7 @@ impl ChoiceAxes {
     }
 
     #[inline]
-    fn beyond(&self, joints: &Joints) -> Option<OverTravel> {
+    pub(super) fn beyond(&self, joints: &Joints) -> Option<OverTravel> {
         for limit in &self.linear {
             let value = joints[limit.joint];
             if let Err(over) = over(limit.joint, Some(limit.travel), value, SLACK) {

@@ -6,6 +6,7 @@ use super::cost::PathCost;
 use super::cycle_time::{DriveLimits, PathClock};
 use super::metric::TravelMeasure;
 use super::solution::{AxisSolution, ChoiceAxes, SolutionSummary};
+use super::surplus::ALONG;
 use crate::accuracy::{PathNode, Placer};
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::{Machine, Pole, SHARE_AT_POLES};
@@ -58,6 +59,9 @@ pub(crate) const HELD: u8 = u8::MAX;
 
 /// More states than this at one point are not followed: the cheapest of them are.
 const MOST_STATES: usize = 64;
+
+/// Of more states than this nothing goes on off the part but by solutions that all come to.
+const MOST_CONTINUED: usize = 8;
 
 /// A pole joint is eased where the tolerance leaves it more than this, radians (2°): elsewhere little would be
 /// gained, and the points stay exact.
@@ -193,7 +197,7 @@ impl Trellis {
         }
         .max(0.0);
         Self {
-            measure: TravelMeasure::new(machine),
+            measure: TravelMeasure::new(machine, placer.solver().surplus()),
             axes: ChoiceAxes::new(machine, placer.solver(), freedom, |joint, travel| {
                 placer.printed_travel(joint, travel)
             }),
@@ -253,9 +257,12 @@ impl Trellis {
         let ways = self.ways(&target, kind);
         if kind == ArrivalKind::Cut && !placer.solver().closed_form() {
             let range = before.clone().unwrap_or(0..0);
-            match placer.solver().planar() {
-                true => self.go_on_in_plane(placer, motion, range, judge),
-                false => self.search_on(placer, &target, range, judge),
+            if placer.solver().planar() {
+                self.go_on_in_plane(placer, motion, range, judge);
+            } else if placer.solver().surplus().is_empty() {
+                self.search_on(placer, &target, range, judge);
+            } else {
+                self.surplus_on(placer, &target, range, judge);
             }
         }
         let found = if self.states.len() > first {
@@ -279,6 +286,9 @@ impl Trellis {
             stands.sort_by(|a, b| b.joints[joint].total_cmp(&a.joints[joint]));
         }
         let range = before.unwrap_or(0..0);
+        if kind == ArrivalKind::Rapid && !placer.solver().surplus().is_empty() {
+            self.rapids_on(placer, &target, range.clone(), &mut stands);
+        }
         if on_pole {
             let arrival = Arrival { from: None, kind, near };
             self.hold(placer, &target, range.clone(), arrival, judge);
@@ -750,6 +760,58 @@ impl Trellis {
             self.keep(first, new);
         }
         self.searched = searched;
+    }
+
+    /// Adds the stands that go on from the cheapest states, off the part, with the joints beyond what a pose needs where
+    /// they are.
+    fn rapids_on(
+        &self,
+        placer: &Placer,
+        target: &Pose,
+        before: std::ops::Range<usize>,
+        stands: &mut Vec<AxisSolution>,
+    ) {
+        let mut states: Vec<&TrellisState> =
+            self.states[before].iter().filter(|state| state.cost.is_way()).collect();
+        states.sort_by(|a, b| a.cost.order(&b.cost));
+        for state in states.into_iter().take(MOST_CONTINUED) {
+            self.axes.rapid_on(placer.solver(), target, &state.joints, stands);
+        }
+    }
+
+    /// Continues each state in a cut of a chain that has joints beyond what a pose needs.
+    fn surplus_on(
+        &mut self,
+        placer: &Placer,
+        target: &Pose,
+        before: std::ops::Range<usize>,
+        judge: &mut dyn CutChecker,
+    ) {
+        let first = self.states.len();
+        let begins = self.layers.last().is_some_and(|layer| layer.kind != ArrivalKind::Cut);
+        let solver = placer.solver();
+        for index in before {
+            let state = self.states[index];
+            if !state.cost.is_way() {
+                continue;
+            }
+            let mut next: Vec<(Joints, u8)> = Vec::new();
+            if begins || state.branch == ALONG {
+                let along = self.axes.along_next(solver, target, &state.joints);
+                next.extend(along.map(|joints| (joints, ALONG)));
+            }
+            if next.is_empty() || state.branch != ALONG {
+                let others = self.axes.surplus_next(solver, target, &state.joints);
+                next.extend(others.into_iter().map(|joints| (joints, state.branch)));
+            }
+            for (mut joints, branch) in next {
+                if self.axes.stand_still(&state.joints, &mut joints) {
+                    let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
+                    let new = self.after(index, joints, branch, hits);
+                    self.keep(first, new);
+                }
+            }
+        }
     }
 
     /// Continues each state in a cut of two linear axes, one of which may go through the centre line or a rotary axis be

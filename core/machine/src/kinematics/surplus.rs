@@ -1,0 +1,175 @@
+//! Joints beyond what a pose needs: the turn about a tool that turns (its spin), rails, positioners.
+//!
+//! As many joints as a chain has freedoms too many stand where they stood, and the others reach the pose: so nothing
+//! wanders, and a joint that does next to nothing for the pose (the flange of a robot whose spindle lies along it) is never
+//! asked for a large turn. Which of them gives way where that does not do is for the stage that knows travels.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+use super::chain::{Chain, Joints, Pose, square, turn};
+use super::fault::Unreachable;
+use super::inverse::{SETTINGS, SolutionMethod, Solver, VERIFIED};
+use super::numeric;
+
+/// A joint that turns by more from one pose to the next, radians, has perhaps gone over to another solution.
+const FAR: f64 = 0.35;
+
+/// Joints of `free` that stand while the others reach any pose: the rotary one nearest to the tool, if that turns, then
+/// those farthest from it. In the order of the chain.
+pub(super) fn surplus(chain: &Chain, free: &[usize], held: &Joints) -> Vec<usize> {
+    let freedoms = |moving: &[usize]| {
+        let at = SETTINGS.map(|share| numeric::spread(free, held, share));
+        at.iter().map(|at| numeric::freedoms(chain, moving, at)).max().unwrap_or(0)
+    };
+    let needed = freedoms(free);
+    let last = free.iter().rev().find(|joint| chain.joints()[**joint].rotary);
+    let spin = last.filter(|_| chain.edge().is_none());
+    let mut moving = free.to_vec();
+    for joint in spin.into_iter().chain(free) {
+        if moving.len() == needed {
+            break;
+        }
+        let without: Vec<usize> = moving.iter().copied().filter(|other| other != joint).collect();
+        if without.len() < moving.len() && freedoms(&without) == needed {
+            moving = without;
+        }
+    }
+    free.iter().copied().filter(|joint| !moving.contains(joint)).collect()
+}
+
+/// Turns about the tool at which an arm is solved, where they are free.
+const SPINS: usize = 12;
+
+impl Solver {
+    /// The solutions of a robot's arm by formulas, each verified, the joints in front of it standing as in `last`; of a
+    /// tool that turns those at turns about it all around. None where the chain is no such arm.
+    pub(super) fn of_arm(&self, pose: &Pose, last: &Joints, tolerance: f64) -> Vec<Joints> {
+        let SolutionMethod::Numeric { arm: Some(arm), .. } = &self.form else {
+            return Vec::new();
+        };
+        let edge = square(arm.edge(), pose.axis);
+        let mut found = Vec::with_capacity(8);
+        match self.chain.edge() {
+            Some(_) if pose.edge == Vector3::zeros() => {
+                arm.solutions(&self.chain, &Pose { edge, ..*pose }, last, &mut found);
+            }
+            Some(_) => arm.solutions(&self.chain, pose, last, &mut found),
+            None => {
+                for spin in 0..SPINS {
+                    let angle = TAU * spin as f64 / SPINS as f64;
+                    let (sine, cosine) = libm::sincos(angle);
+                    let edge = turn(edge, pose.axis, sine, cosine);
+                    arm.solutions(&self.chain, &Pose { edge, ..*pose }, last, &mut found);
+                }
+            }
+        }
+        found.retain_mut(|joints| {
+            // Close to where two solutions meet rounding is large: a step of the search takes it away.
+            if !self.verified(joints, pose, tolerance.max(VERIFIED)) {
+                match self.search_holding(pose, joints, self.surplus(), tolerance) {
+                    Ok(next) => *joints = next,
+                    Err(_) => return false,
+                }
+            }
+            true
+        });
+        found
+    }
+
+    /// Whether [`Solver::inverse`] gives solutions all around for the turn about the tool.
+    pub fn spins(&self) -> bool {
+        self.chain.edge().is_none() && matches!(&self.form, SolutionMethod::Numeric { arm: Some(_), .. })
+    }
+
+    /// Joints beyond what a pose needs, in the order of the chain: each solution has them wherever they stand. None of a
+    /// chain with a closed form.
+    pub fn surplus(&self) -> &[usize] {
+        match &self.form {
+            SolutionMethod::Numeric { surplus, .. } => surplus,
+            SolutionMethod::Closed { .. } => &[],
+        }
+    }
+
+    /// For a chain without a closed form: the solution next to `from`, verified, the joints of `holding` standing as they
+    /// stand there.
+    ///
+    /// # Errors
+    /// By how much the nearest pose misses.
+    pub fn search_holding(
+        &self,
+        pose: &Pose,
+        from: &Joints,
+        holding: &[usize],
+        tolerance: f64,
+    ) -> Result<Joints, Unreachable> {
+        self.holding_within(pose, from, holding, tolerance, &mut { numeric::STEPS })
+    }
+
+    fn holding_within(
+        &self,
+        pose: &Pose,
+        from: &Joints,
+        holding: &[usize],
+        tolerance: f64,
+        left: &mut usize,
+    ) -> Result<Joints, Unreachable> {
+        let SolutionMethod::Numeric { free, .. } = &self.form else {
+            return Err(Unreachable::Linear);
+        };
+        let mut start = self.held;
+        for joint in free {
+            start[*joint] = from[*joint];
+        }
+        let mut moving = [0; super::MAX_AXES];
+        let mut count = 0;
+        for joint in free.iter().filter(|joint| !holding.contains(joint)) {
+            moving[count] = *joint;
+            count += 1;
+        }
+        let (joints, miss) = numeric::solve(&self.chain, &moving[..count], pose, &start, left);
+        match self.verified(&joints, pose, tolerance.max(VERIFIED)) {
+            true => Ok(joints),
+            false => Err(Unreachable::Numeric { miss }),
+        }
+    }
+
+    /// The solution next to `from`: with the surplus joints where they stand, or else the one over which all joints move
+    /// least.
+    pub(super) fn search_surplus(
+        &self,
+        pose: &Pose,
+        from: &Joints,
+        tolerance: f64,
+        left: &mut usize,
+    ) -> Result<Joints, Unreachable> {
+        let all = *left;
+        let held = self.holding_within(pose, from, self.surplus(), tolerance, left);
+        if held.as_ref().is_ok_and(|held| !self.turns_far(from, held)) || self.surplus().is_empty()
+        {
+            return held;
+        }
+        let mut again = numeric::STEPS.min(all);
+        let freed = self.holding_within(pose, from, &[], tolerance, &mut again);
+        match (held, freed) {
+            (Ok(held), Ok(freed)) => {
+                let nearer = self.turned(from, &freed) < self.turned(from, &held);
+                Ok(if nearer { freed } else { held })
+            }
+            (Err(_), freed) => freed,
+            (held, Err(_)) => held,
+        }
+    }
+
+    /// Has perhaps a joint gone over to another solution from one set of axis values to the next?
+    pub fn turns_far(&self, from: &Joints, to: &Joints) -> bool {
+        self.turned(from, to) > FAR
+    }
+
+    /// The largest turn of a joint, radians.
+    fn turned(&self, from: &Joints, to: &Joints) -> f64 {
+        let joints = self.chain.joints().iter().enumerate().filter(|(_, joint)| joint.rotary);
+        joints.map(|(joint, _)| libm::fabs(to[joint] - from[joint])).fold(0.0, f64::max)
+    }
+}

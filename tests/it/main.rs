@@ -67,6 +67,7 @@ mod report_solids;
 mod right_jobs;
 #[cfg(unix)]
 mod rights;
+mod robots;
 mod settings;
 mod shells;
 #[cfg(unix)]

@@ -3,14 +3,14 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_plugin::{
-    Capabilities, Coolant, Dialect, Event, Feed, Format, OptionSpec, Setup, Spindle, SpindleSense, Units, ascii,
-    export_dialect, fixed,
+    Capabilities, Coolant, Dialect, Event, Feed, Format, OptionSpec, Setup, Spindle, SpindleSense,
+    Units, ascii, export_dialect, fixed,
 };
 
 /// Axes of the arm, and of what stands beside it.
 const AXES: usize = 6;
 
-/// Where the value of an axis word stands in a `jointtarget`: `J1` to `J6`, then `E1` to `E6`.
+/// Where the value of an axis word stands in a `jointtarget`: `A1` to `A6` or `J1` to `J6`, then `E1` to `E6`.
 type Place = usize;
 
 /// Components of a `jointtarget`, in that order.
@@ -48,11 +48,24 @@ struct Rapid {
 }
 
 const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::integer("decimals", (0, 6), 4, "Decimals of the values of axes that turn, degrees."),
+    OptionSpec::integer(
+        "decimals",
+        (0, 6),
+        4,
+        "Decimals of the values of axes that turn, degrees.",
+    ),
     OptionSpec::integer("linear_decimals", (0, 6), 3, "Decimals of those that slide, mm."),
     // Any other zone leaves the path, and no certificate would hold.
-    OptionSpec::text("zone", "fine", "Zone of every cut; what another than `fine` leaves of the path is not certified."),
-    OptionSpec::text("tool", "tool0", "Tool of every move: the control takes load and velocity from it, and no position."),
+    OptionSpec::text(
+        "zone",
+        "fine",
+        "Zone of every cut; what another than `fine` leaves of the path is not certified.",
+    ),
+    OptionSpec::text(
+        "tool",
+        "tool0",
+        "Tool of every move: the control takes load and velocity from it, and no position.",
+    ),
     OptionSpec::lines("optional_stop", "Stop;", "Lines of an optional stop."),
 ];
 
@@ -68,7 +81,7 @@ fn place(name: &str) -> Option<Place> {
     let (kind, number) = name.split_at_checked(1)?;
     let number: usize = number.parse().ok().filter(|number| (1..=AXES).contains(number))?;
     match kind {
-        "J" => Some(number - 1),
+        "A" | "J" => Some(number - 1),
         "E" => Some(AXES + number - 1),
         _ => None,
     }
@@ -81,7 +94,9 @@ impl Dialect for Rapid {
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         if setup.tcp {
-            return Err("it writes the values of the axes (MoveAbsJ), not MoveL: tcp = \"post\"".to_owned());
+            return Err(
+                "it writes the values of the axes (MoveAbsJ), not MoveL: tcp = \"post\"".to_owned()
+            );
         }
         if setup.units != Units::Millimetre {
             return Err("RAPID counts in millimetres: units = \"mm\"".to_owned());
@@ -90,15 +105,16 @@ impl Dialect for Rapid {
         for word in setup.words {
             let name = word.name;
             places.push(place(name).ok_or_else(|| {
-                format!("axis {name}: a robot of ABB has the axes J1 to J6, and E1 to E6 beside it (rails, positioners): rename the axis, in the chain too")
+                format!("axis {name}: a robot of ABB has the axes A1 to A6 (or J1 to J6), and E1 to E6 beside it (rails, positioners): rename the axis, in the chain too")
             })?);
             if word.wrapped {
-                return Err(format!("axis {name}: MoveAbsJ leads an axis to the value that is written, whichever turn: leave `range` out"));
+                return Err(format!(
+                    "axis {name}: MoveAbsJ leads an axis to the value that is written, whichever turn: leave `range` out"
+                ));
             }
         }
-        let decimals = |rotary: bool| {
-            setup.integer(if rotary { "decimals" } else { "linear_decimals" }) as u8
-        };
+        let decimals =
+            |rotary: bool| setup.integer(if rotary { "decimals" } else { "linear_decimals" }) as u8;
         Ok(Rapid {
             places,
             decimals: setup.words.iter().map(|word| decimals(word.rotary)).collect(),
@@ -133,7 +149,10 @@ impl Dialect for Rapid {
             "the procedures SpindleCw, SpindleCcw, SpindleOrient, SpindleOff, CoolantOn, CoolantOff and ChangeTool are on the control, where the program calls them".to_owned(),
         ];
         if self.zone != "fine" {
-            relies.push(format!("what the zone {} leaves of the path is allowed: it is not certified", self.zone));
+            relies.push(format!(
+                "what the zone {} leaves of the path is allowed: it is not certified",
+                self.zone
+            ));
         }
         relies
     }

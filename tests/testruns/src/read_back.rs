@@ -320,7 +320,8 @@ pub fn blocks(program: &str, names: &[&str], swap: &[String]) -> Vec<Block> {
                 _ => {
                     let name = names.iter().find(|name| word.starts_with(**name));
                     if let Some(name) = name
-                        && let Ok(value) = word[name.len()..].trim_end_matches(')').parse()
+                        && let Ok(value) =
+                            word[name.len()..].trim_start_matches('=').trim_end_matches(')').parse()
                     {
                         known.insert(name, value);
                         moved = true;

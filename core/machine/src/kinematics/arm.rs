@@ -45,8 +45,7 @@ fn meeting(a: &Joint, b: &Joint) -> Option<Vector3<f64>> {
     }
     let between = b.point - a.point;
     let along = between.cross(&b.direction).dot(&cross) / square;
-    (libm::fabs(between.dot(&cross)) < MEETS * square.sqrt())
-        .then(|| a.point + a.direction * along)
+    (libm::fabs(between.dot(&cross)) < MEETS * square.sqrt()).then(|| a.point + a.direction * along)
 }
 
 /// How far a point is from a joint's line, mm.
@@ -86,12 +85,8 @@ impl Arm {
         }
         let edge = chain.edge().unwrap_or_else(|| square(Vector3::x(), chain.axis()));
         let leading = if spherical { arm[3] } else { arm[1] };
-        let turning = Chain::new(
-            vec![leading, arm[4], arm[5]],
-            Vector3::zeros(),
-            chain.tip(),
-            chain.axis(),
-        );
+        let turning =
+            Chain::new(vec![leading, arm[4], arm[5]], Vector3::zeros(), chain.tip(), chain.axis());
         let turning = turning.with_edge(Some(edge));
         let (turning, _) = Orientation::new(&turning, &[0, 1, 2], &Joints::default()).ok()?;
         let elbow = if spherical { centre } else { arm[3].point };
@@ -101,6 +96,30 @@ impl Arm {
     /// The edge with all axes at zero, some direction across the axis of a tool that turns.
     pub(super) fn edge(&self) -> Vector3<f64> {
         self.edge
+    }
+
+    /// On which side of shoulder, elbow and wrist the axes stand, a bit each: solutions that differ in one do not go on from
+    /// one another.
+    pub(super) fn branch(&self, chain: &Chain, joints: &Joints) -> u8 {
+        let arm = &chain.joints()[self.first..];
+        let q = &joints[self.first..];
+        let carriers = if self.spherical { 1..3 } else { 1..4 };
+        let centre = carriers.rev().fold(self.centre, |at, place| about(&arm[place], at, q[place]));
+        let k = arm[1].direction;
+        let across = |way: Vector3<f64>| way - k * k.dot(&way);
+        let upper = across(arm[2].point - arm[1].point);
+        let fore = across(aim(&arm[2], self.elbow - arm[2].point, q[2]));
+        let leading = if self.spherical { arm[3].direction } else { k };
+        let wrist = arm[4].direction.cross(&aim(&arm[4], arm[5].direction, q[4]));
+        let sides = [
+            arm[0].direction.cross(&(centre - arm[0].point)).dot(&k),
+            upper.cross(&fore).dot(&k),
+            leading.dot(&wrist),
+        ];
+        sides
+            .iter()
+            .enumerate()
+            .fold(0, |bits, (place, side)| bits | u8::from(*side > 0.0) << place)
     }
 
     /// Adds to `found` the solutions for a whole frame, the joints in front of the arm standing as in `last`; angles in -π
@@ -191,8 +210,7 @@ impl Arm {
         let fore = across(self.elbow - arm[2].point);
         let way = across(place - arm[1].point);
         let product = 2.0 * upper.norm() * fore.norm();
-        let cosine =
-            (way.norm_squared() - upper.norm_squared() - fore.norm_squared()) / product;
+        let cosine = (way.norm_squared() - upper.norm_squared() - fore.norm_squared()) / product;
         if cosine.is_nan() || libm::fabs(cosine) > 1.0 + STRETCHED {
             return Vec::new();
         }

@@ -56,7 +56,11 @@ pub struct Solver {
 
 /// How a chain is solved by a search: fewer than three linear axes, so that rotary ones have to place the tip as well, or
 /// rotary axes that no formula knows.
-fn numeric_form(chain: &Chain, freedom: &Freedom, quills: bool) -> Result<SolutionMethod, NoClosedForm> {
+fn numeric_form(
+    chain: &Chain,
+    freedom: &Freedom,
+    quills: bool,
+) -> Result<SolutionMethod, NoClosedForm> {
     let Freedom { rotary, still, held, .. } = freedom;
     let slides = |joint: &usize| !chain.joints()[*joint].rotary;
     let moves = |joint: &usize| match slides(joint) {
@@ -86,7 +90,8 @@ fn numeric_form(chain: &Chain, freedom: &Freedom, quills: bool) -> Result<Soluti
     };
     let linear = linear.into_iter().filter(|joint| !surplus.contains(joint)).collect();
     let arm = Arm::new(chain, &free).map(Box::new);
-    Ok(SolutionMethod::Numeric { linear, free, planar, surplus, arm })
+    let framed = surplus::framed(chain, &surplus).map(Box::new);
+    Ok(SolutionMethod::Numeric { linear, free, planar, surplus, framed, arm })
 }
 
 /// No formula knows these rotary axes: more than two that point a tool which turns, or other than three of one with a
@@ -118,6 +123,8 @@ pub(super) enum SolutionMethod {
         linear: Vec<usize>,
         planar: Option<Box<Planar>>,
         surplus: Vec<usize>,
+        /// The chain with an edge on its tool, where the turn about a tool that turns is one of them.
+        framed: Option<Box<Chain>>,
         /// What gives the solutions of a robot's arm by formulas.
         arm: Option<Box<Arm>>,
     },
@@ -172,6 +179,15 @@ impl Solver {
     /// ([`Solver::planar`]) or by a numeric search that is verified.
     pub fn closed_form(&self) -> bool {
         matches!(self.form, SolutionMethod::Closed { .. })
+    }
+
+    /// Three linear axes put the tip on its place wherever the rotary ones stand, whether these are solved in closed form or
+    /// not.
+    pub fn places_tip(&self) -> bool {
+        match &self.form {
+            SolutionMethod::Closed { .. } => true,
+            SolutionMethod::Numeric { linear, .. } => linear.len() == 3,
+        }
     }
 
     /// The ways to point the tool along the axis (and with the edge) of `pose` within `tolerance` (radians; it
@@ -450,7 +466,7 @@ impl Solver {
         };
         let rotary = self.rotary();
         let mut found: Vec<Joints> = Vec::new();
-        let mut least = f64::INFINITY;
+        let mut least = (f64::INFINITY, Unreachable::Numeric { miss: f64::INFINITY });
         for start in starts {
             let mut steps = numeric::STEPS.min(*left);
             *left -= steps;
@@ -468,7 +484,11 @@ impl Solver {
                         found.push(joints);
                     }
                 }
-                Err(Unreachable::Numeric { miss }) => least = least.min(miss),
+                Err(fault @ (Unreachable::Numeric { miss } | Unreachable::Axis { miss })) => {
+                    if miss < least.0 {
+                        least = (miss, fault);
+                    }
+                }
                 Err(_) => {}
             }
             if *left == 0 {
@@ -476,7 +496,7 @@ impl Solver {
             }
         }
         if found.is_empty() {
-            return Err(Unreachable::Numeric { miss: least });
+            return Err(least.1);
         }
         Ok(found)
     }

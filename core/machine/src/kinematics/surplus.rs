@@ -12,6 +12,7 @@ use super::chain::{Chain, Joints, Pose, square, turn};
 use super::fault::Unreachable;
 use super::inverse::{SETTINGS, SolutionMethod, Solver, VERIFIED};
 use super::numeric;
+use super::orientation::{angle, angle_about};
 
 /// A joint that turns by more from one pose to the next, radians, has perhaps gone over to another solution.
 const FAR: f64 = 0.35;
@@ -37,6 +38,13 @@ pub(super) fn surplus(chain: &Chain, free: &[usize], held: &Joints) -> Vec<usize
         }
     }
     free.iter().copied().filter(|joint| !moving.contains(joint)).collect()
+}
+
+/// The chain with some edge on its tool, where the turn about a tool that turns is beyond what a pose needs.
+pub(super) fn framed(chain: &Chain, surplus: &[usize]) -> Option<Chain> {
+    let turns = surplus.iter().any(|joint| chain.joints()[*joint].rotary);
+    let framed = || chain.clone().with_edge(Some(square(Vector3::x(), chain.axis())));
+    (turns && chain.edge().is_none()).then(framed)
 }
 
 /// Turns about the tool at which an arm is solved, where they are free.
@@ -80,7 +88,16 @@ impl Solver {
 
     /// Whether [`Solver::inverse`] gives solutions all around for the turn about the tool.
     pub fn spins(&self) -> bool {
-        self.chain.edge().is_none() && matches!(&self.form, SolutionMethod::Numeric { arm: Some(_), .. })
+        self.chain.edge().is_none()
+            && matches!(&self.form, SolutionMethod::Numeric { arm: Some(_), .. })
+    }
+
+    /// The branch of a robot's arm on which the axes stand; 0 of other chains.
+    pub fn branch_of_arm(&self, joints: &Joints) -> u8 {
+        match &self.form {
+            SolutionMethod::Numeric { arm: Some(arm), .. } => arm.branch(&self.chain, joints),
+            _ => 0,
+        }
     }
 
     /// Joints beyond what a pose needs, in the order of the chain: each solution has them wherever they stand. None of a
@@ -107,6 +124,25 @@ impl Solver {
         self.holding_within(pose, from, holding, tolerance, &mut { numeric::STEPS })
     }
 
+    /// The solution next to `from` at which the tool has the same heading: what is fixed on it keeps its angle against the X
+    /// of the part, laid across the tool axis. None where a tool does not turn, or nothing is found.
+    pub fn search_heading(&self, pose: &Pose, from: &Joints, tolerance: f64) -> Option<Joints> {
+        let SolutionMethod::Numeric { framed: Some(framed), free, surplus, .. } = &self.form else {
+            return None;
+        };
+        let stood = framed.forward(from);
+        let across = |axis| square(Vector3::x(), axis);
+        let heading = angle_about(stood.axis, across(stood.axis), stood.edge);
+        let (sine, cosine) = libm::sincos(heading);
+        let edge = turn(across(pose.axis), pose.axis, sine, cosine);
+        let spin = surplus.iter().rev().find(|joint| self.chain.joints()[**joint].rotary);
+        let moves = |joint: &usize| Some(joint) == spin || !surplus.contains(joint);
+        let moving: Vec<usize> = free.iter().copied().filter(moves).collect();
+        let mut left = numeric::STEPS;
+        let (joints, _) = numeric::solve(framed, &moving, &Pose { edge, ..*pose }, from, &mut left);
+        self.verified(&joints, pose, tolerance.max(VERIFIED)).then_some(joints)
+    }
+
     fn holding_within(
         &self,
         pose: &Pose,
@@ -131,6 +167,12 @@ impl Solver {
         let (joints, miss) = numeric::solve(&self.chain, &moving[..count], pose, &start, left);
         match self.verified(&joints, pose, tolerance.max(VERIFIED)) {
             true => Ok(joints),
+            // Linear axes put the tip wherever it is wanted: what is missed is how the tool stands.
+            false if self.places_tip() => {
+                let reached = self.chain.forward(&joints);
+                let axis = angle(reached.axis, pose.axis);
+                Err(Unreachable::Axis { miss: axis.max(angle(reached.edge, pose.edge_across())) })
+            }
             false => Err(Unreachable::Numeric { miss }),
         }
     }
@@ -154,7 +196,7 @@ impl Solver {
         let freed = self.holding_within(pose, from, &[], tolerance, &mut again);
         match (held, freed) {
             (Ok(held), Ok(freed)) => {
-                let nearer = self.turned(from, &freed) < self.turned(from, &held);
+                let nearer = self.largest_turn(from, &freed) < self.largest_turn(from, &held);
                 Ok(if nearer { freed } else { held })
             }
             (Err(_), freed) => freed,
@@ -164,11 +206,11 @@ impl Solver {
 
     /// Has perhaps a joint gone over to another solution from one set of axis values to the next?
     pub fn turns_far(&self, from: &Joints, to: &Joints) -> bool {
-        self.turned(from, to) > FAR
+        self.largest_turn(from, to) > FAR
     }
 
     /// The largest turn of a joint, radians.
-    fn turned(&self, from: &Joints, to: &Joints) -> f64 {
+    pub fn largest_turn(&self, from: &Joints, to: &Joints) -> f64 {
         let joints = self.chain.joints().iter().enumerate().filter(|(_, joint)| joint.rotary);
         joints.map(|(joint, _)| libm::fabs(to[joint] - from[joint])).fold(0.0, f64::max)
     }

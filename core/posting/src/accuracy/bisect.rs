@@ -186,7 +186,7 @@ pub(super) fn put_in(
             off <= turn / 4.0 + placer.axis_rounding()
         })
     });
-    if straight || !placer.solver().closed_form() {
+    if straight || !placer.solver().places_tip() {
         return exact;
     }
     // A point that is off by all of the tolerance leaves nothing to the pieces beside it.

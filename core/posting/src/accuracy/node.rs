@@ -14,7 +14,7 @@ use post_machine::description::{ControlPoint, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::batch::Column;
 use post_machine::kinematics::choose::{RotaryAxes, RotaryTravel};
-use post_machine::kinematics::travel::{AT_END, OverTravel, over, passed};
+use post_machine::kinematics::travel::{AT_END, OverTravel, over};
 use post_machine::kinematics::{Joints, MAX_AXES, Pose, Solver, Trace, Unreachable};
 use post_machine::tilted_plane::TiltedPlane;
 
@@ -164,7 +164,7 @@ impl Placer {
                 .filter(|joint| machine.axes[*joint].range.is_some())
                 .collect(),
             reach: reach(machine, &solver),
-            tip_rounding: if solver.closed_form() {
+            tip_rounding: if solver.places_tip() {
                 words.rounding() + 1e-6
             } else {
                 // What rounded angles do to the tip is not made up for: it stays with the tolerance.
@@ -308,8 +308,14 @@ impl Placer {
 
     /// No rotary joint is beyond its travel.
     fn turns_inside(&self, joints: &Joints) -> bool {
+        self.turned_beyond(joints).is_none()
+    }
+
+    /// The first rotary joint that is beyond its travel.
+    fn turned_beyond(&self, joints: &Joints) -> Option<OverTravel> {
         let mut limits = self.turning.limits.iter();
-        limits.all(|limit| passed(Some(limit.travel), joints[limit.joint], 0.0).is_none())
+        limits
+            .find_map(|limit| over(limit.joint, Some(limit.travel), joints[limit.joint], 0.0).err())
     }
 
     /// Puts the joints that turn beside the pole joint on the turns of `near`.
@@ -339,6 +345,12 @@ impl Placer {
             let joints = solver
                 .search_between(&target, [first, last], self.axis_tolerance)
                 .map_err(PlacementError::Unreachable)?;
+            let joints = match self.turned_beyond(&joints) {
+                Some(over) if !solver.surplus().is_empty() => {
+                    self.at_end_between(&target, over, first, last)?
+                }
+                _ => joints,
+            };
             return self.settled(target, t, &joints);
         }
         let branches =
@@ -349,6 +361,25 @@ impl Placer {
                 self.settled(target, t, &joints)
             }
             Err(over) => Err(PlacementError::OverTravel { over, tried: branches.count() }),
+        }
+    }
+
+    /// Between two sets of axis values the joint that would pass its travel stays at its end, and all others make up for it.
+    fn at_end_between(
+        &self,
+        target: &Pose,
+        beyond: OverTravel,
+        first: &Joints,
+        last: &Joints,
+    ) -> Result<Joints, PlacementError> {
+        let mut start: Joints = std::array::from_fn(|joint| (first[joint] + last[joint]) / 2.0);
+        start[beyond.joint] = beyond.limit;
+        let holding = [beyond.joint];
+        let joints = self.solver.search_holding(target, &start, &holding, self.axis_tolerance);
+        let joints = joints.map_err(PlacementError::Unreachable)?;
+        match self.turned_beyond(&joints) {
+            Some(over) => Err(PlacementError::OverTravel { over, tried: 1 }),
+            None => Ok(joints),
         }
     }
 

@@ -83,7 +83,7 @@ impl BlockStage<'_> {
         match last {
             Some(last) => {
                 // Into a bore it is no rapid over the part.
-                let loose = leg.loose && leg.placer.solver().closed_form();
+                let loose = leg.loose && leg.placer.solver().places_tip();
                 self.cut(&PathLeg { loose, ..*leg }, last, node, out);
             }
             // It is up there already.
@@ -227,7 +227,7 @@ impl BlockStage<'_> {
         let joints = &node.trace.joints;
         let mut rates = Joints::default();
         let mut further = *joints;
-        if solver.closed_form()
+        if solver.places_tip()
             && solver.place(node.tip + line, &mut further, &node.trace.turns).is_ok()
         {
             for (rate, (after, before)) in rates.iter_mut().zip(further.iter().zip(joints)) {
@@ -310,7 +310,7 @@ impl BlockStage<'_> {
     fn stands_at(&self, placer: &Placer, node: &PathNode, tip: Vector3<f64>) -> Option<PathNode> {
         let target = Pose { tip, ..node.target };
         let joints = &node.trace.joints;
-        let placed = match placer.solver().closed_form() {
+        let placed = match placer.solver().places_tip() {
             true => placer.settled(target, 1.0, joints),
             // The rotary axes are needed for the way.
             false => placer.place(target, 1.0, joints),

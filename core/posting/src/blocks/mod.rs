@@ -474,7 +474,7 @@ impl<'a> BlockStage<'a> {
             // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns
             // (unless the tip depends on it, as it does without a closed form).
             let joints = &last.trace.joints;
-            let stay = if leg.placer.solver().closed_form() && self.points_alike(&last, node) {
+            let stay = if leg.placer.solver().places_tip() && self.points_alike(&last, node) {
                 leg.placer.settled(node.target, 1.0, joints)
             } else {
                 leg.placer.place_on(&last, node.target)

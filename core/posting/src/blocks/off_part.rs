@@ -108,7 +108,7 @@ impl BlockStage<'_> {
             line,
             motion: &motion,
             // In a bore it is no rapid over the part.
-            loose: placer.solver().closed_form(),
+            loose: placer.solver().places_tip(),
             reason: BlockReason::Leave,
         };
         self.cut(&leg, &last, &away, out);
@@ -147,7 +147,7 @@ impl BlockStage<'_> {
         for (place, away) in away.into_iter().enumerate() {
             let motion = StraightMove { pace: MoveFeed::feed_or_rapid(feed), ..away };
             let joints = &last.trace.joints;
-            let placed = match placer.solver().closed_form() {
+            let placed = match placer.solver().places_tip() {
                 true => placer.settled(pose(&motion), 1.0, joints),
                 // The rotary axes are needed for the way.
                 false => placer.place(pose(&motion), 1.0, joints),

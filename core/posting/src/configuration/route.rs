@@ -123,8 +123,8 @@ impl CutChecker for CutTrial<'_> {
         if planned.whole().is_some() {
             return true;
         }
-        // What two linear axes miss on the wrong side of the centre line is the tip alone.
-        if !self.strict && !placer.solver().planar() {
+        // What two linear axes miss on the wrong side of the centre line is the tip alone, and so it is with an arm.
+        if !self.strict && placer.solver().places_tip() {
             planned.tolerances.tip = f64::INFINITY;
         }
         self.linearise.comes_through(&planned)

@@ -19,14 +19,20 @@ const MOST_TURNS: usize = 6;
 const PLACES: usize = 8;
 
 /// Solutions that are followed, those nearest to where the axes stand.
-const MOST_STANDS: usize = 200;
+const MOST_STANDS: usize = 96;
 
 /// An axis that stands at the end of its travel stands so far inside of it, radians or mm: between two points it may go a
 /// little farther than at both.
 const INSIDE: f64 = 2e-3;
 
-/// The branch of states whose rails go along with the tool; of all others it is 0.
-pub(super) const ALONG: u8 = 1;
+/// Up to such a turn a cut is taken to come through, away from the ends of travel, radians.
+const SURE: f64 = 0.1;
+
+/// Set in the branch of states whose rails go along with the tool.
+pub(super) const ALONG: u8 = 1 << 6;
+
+/// Set in the branch of states whose tool keeps its heading against the part.
+pub(super) const HEADING: u8 = 1 << 5;
 
 impl ChoiceAxes {
     /// The stands at `pose`, its surplus joints as `last` has them and elsewhere in their travel.
@@ -55,7 +61,8 @@ impl ChoiceAxes {
                         joints[*joint] = *value;
                     }
                     if spin.is_some() {
-                        let there = front.first().map(|at| solver.inverse(pose, at, self.axis_tolerance));
+                        let there =
+                            front.first().map(|at| solver.inverse(pose, at, self.axis_tolerance));
                         found.extend(there.into_iter().flatten().flatten());
                         continue;
                     }
@@ -146,7 +153,10 @@ impl ChoiceAxes {
             }
             let over = self.at_rest(&mut joints).err().or_else(|| self.beyond(&joints));
             match over {
-                None => stands.push(AxisSolution { joints, branch: 0, free: 0 }),
+                None => {
+                    let branch = solver.branch_of_arm(&joints);
+                    stands.push(AxisSolution { joints, branch, free: 0 });
+                }
                 Some(over) => self.keep_least(&mut summary.over, over),
             }
         }
@@ -202,12 +212,7 @@ impl ChoiceAxes {
     }
 
     /// The way on in a cut to `pose` on which rails go along with the tool, as little as they can.
-    pub(super) fn along_next(
-        &self,
-        solver: &Solver,
-        pose: &Pose,
-        from: &Joints,
-    ) -> Option<Joints> {
+    pub(super) fn along_next(&self, solver: &Solver, pose: &Pose, from: &Joints) -> Option<Joints> {
         let turns = |joint: &usize| solver.chain().joints()[*joint].rotary;
         let surplus = solver.surplus();
         let holding: Vec<usize> = surplus.iter().copied().filter(turns).collect();
@@ -216,6 +221,23 @@ impl ChoiceAxes {
         }
         let next = solver.search_holding(pose, from, &holding, self.axis_tolerance).ok()?;
         self.reaches(&next).then_some(next)
+    }
+
+    /// The way on in a cut to `pose` on which the tool keeps its heading against the part.
+    pub(super) fn heading_next(
+        &self,
+        solver: &Solver,
+        pose: &Pose,
+        from: &Joints,
+    ) -> Option<Joints> {
+        let next = solver.search_heading(pose, from, self.axis_tolerance)?;
+        self.reaches(&next).then_some(next)
+    }
+
+    /// Nothing between two points of a cut can be in the way: no axis turns far, none is near an end of its travel.
+    pub(super) fn sure(&self, solver: &Solver, from: &Joints, to: &Joints) -> bool {
+        let turn = solver.largest_turn(from, to);
+        turn < SURE && !self.near_end(from, to, turn.max(SURE))
     }
 
     /// The axis that stands beyond its travel, and where its travel ends.

@@ -6,7 +6,7 @@ use super::cost::PathCost;
 use super::cycle_time::{DriveLimits, PathClock};
 use super::metric::TravelMeasure;
 use super::solution::{AxisSolution, ChoiceAxes, SolutionSummary};
-use super::surplus::ALONG;
+use super::surplus::{ALONG, HEADING};
 use crate::accuracy::{PathNode, Placer};
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::{Machine, Pole, SHARE_AT_POLES};
@@ -262,7 +262,7 @@ impl Trellis {
             } else if placer.solver().surplus().is_empty() {
                 self.search_on(placer, &target, range, judge);
             } else {
-                self.surplus_on(placer, &target, range, judge);
+                self.surplus_on(placer, motion, range, judge);
             }
         }
         let found = if self.states.len() > first {
@@ -508,11 +508,17 @@ impl Trellis {
     ) {
         let chain = placer.solver().chain();
         let Self { axes, measure, states, .. } = self;
+        let arm = measure.has_surplus();
         let before = from.map(|index| states[index]);
         let last = before.map_or(*near, |state| state.joints);
         axes.turned(stand, &last, &mut |joints| {
             let (cost, way) = match &before {
-                Some(state) => (state.cost, measure.off_part(chain, &state.joints, joints)),
+                Some(state) => {
+                    let way = measure.off_part(chain, &state.joints, joints);
+                    // On the way from one branch of an arm to another the tip would leave its way.
+                    let changes = arm && stand.branch != state.branch & !(ALONG | HEADING);
+                    (if changes { state.cost.and_rewind(0.0) } else { state.cost }, way)
+                }
                 None => (PathCost::NONE, measure.approach(near, joints)),
             };
             let hits = match &before {
@@ -783,12 +789,16 @@ impl Trellis {
     fn surplus_on(
         &mut self,
         placer: &Placer,
-        target: &Pose,
+        motion: &StraightMove,
         before: std::ops::Range<usize>,
         judge: &mut dyn CutChecker,
     ) {
         let first = self.states.len();
-        let begins = self.layers.last().is_some_and(|layer| layer.kind != ArrivalKind::Cut);
+        let Some(last) = self.layers.last() else {
+            return;
+        };
+        let begins = last.kind != ArrivalKind::Cut;
+        let (from_pose, target) = (pose(&last.motion), &pose(motion));
         let solver = placer.solver();
         for index in before {
             let state = self.states[index];
@@ -796,17 +806,31 @@ impl Trellis {
                 continue;
             }
             let mut next: Vec<(Joints, u8)> = Vec::new();
-            if begins || state.branch == ALONG {
-                let along = self.axes.along_next(solver, target, &state.joints);
-                next.extend(along.map(|joints| (joints, ALONG)));
+            let way = state.branch & (ALONG | HEADING);
+            if begins || way == ALONG {
+                let goes = self.axes.along_next(solver, target, &state.joints);
+                next.extend(goes.map(|joints| (joints, ALONG)));
             }
-            if next.is_empty() || state.branch != ALONG {
+            if begins || way == HEADING {
+                let goes = self.axes.heading_next(solver, target, &state.joints);
+                next.extend(goes.map(|joints| (joints, HEADING)));
+            }
+            if begins || next.is_empty() {
                 let others = self.axes.surplus_next(solver, target, &state.joints);
-                next.extend(others.into_iter().map(|joints| (joints, state.branch)));
+                next.extend(others.into_iter().map(|joints| (joints, way)));
             }
             for (mut joints, branch) in next {
-                if self.axes.stand_still(&state.joints, &mut joints) {
+                if self.axes.stand_still(&state.joints, &mut joints)
+                    && (self.axes.sure(solver, &state.joints, &joints)
+                        || judge.passes(
+                            placer,
+                            motion,
+                            CutEnd { pose: &from_pose, joints: &state.joints },
+                            CutEnd { pose: target, joints: &joints },
+                        ))
+                {
                     let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
+                    let branch = branch | solver.branch_of_arm(&joints);
                     let new = self.after(index, joints, branch, hits);
                     self.keep(first, new);
                 }

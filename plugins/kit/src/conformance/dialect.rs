@@ -60,13 +60,17 @@ pub(super) fn test(
         // A control that always keeps the tip, or a dialect for nothing else.
         setup.tcp = true;
         if plugin.dialect(&setup).is_ok() {
-            case.note(format!("all cases are under TCP, since it refuses to open without: {fault}"));
+            case.note(format!(
+                "all cases are under TCP, since it refuses to open without: {fault}"
+            ));
         } else {
             setup = of_a_robot(five_axes(options));
             if plugin.dialect(&setup).is_err() {
                 return Err(fault);
             }
-            case.note(format!("all cases have the axes of a robot, since it refuses others: {fault}"));
+            case.note(format!(
+                "all cases have the axes of a robot, since it refuses others: {fault}"
+            ));
         }
     }
     let format = plugin.dialect(&setup)?.format().clone();

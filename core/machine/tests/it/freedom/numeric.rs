@@ -5,8 +5,9 @@ use post_machine::kinematics::chain::{Chain, MAX_AXES, turn};
 
 use super::*;
 
-/// Chains that have no closed form: linear joints, rotary joints, with a leading edge.
-const NUMERIC: [(usize, usize, bool); 9] = [
+/// Chains that have no closed form: linear joints, rotary joints, with a leading edge. With three linear joints those whose
+/// rotary ones no formula knows.
+const NUMERIC: [(usize, usize, bool); 15] = [
     (2, 3, false),
     (2, 4, false),
     (1, 4, false),
@@ -16,6 +17,12 @@ const NUMERIC: [(usize, usize, bool); 9] = [
     (2, 6, false),
     (2, 4, true),
     (0, 6, true),
+    (1, 6, false),
+    (3, 3, false),
+    (3, 4, false),
+    (3, 1, true),
+    (3, 2, true),
+    (3, 4, true),
 ];
 
 /// From a start near by, a search finds a solution that stands up to the isometries; the inverse, which knows

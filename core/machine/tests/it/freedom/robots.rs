@@ -11,11 +11,8 @@ use super::*;
 /// The chain of an arm as the published parameters have it: shoulder, elbow and wrist in the plane Y = 0, upright; senses
 /// of the joints and what they count at that place besides.
 fn opw_chain(of: &Parameters, tip: Vector3<f64>, edge: Option<Vector3<f64>>) -> Chain {
-    let turning = |direction: Vector3<f64>, point: Vector3<f64>| Joint {
-        rotary: true,
-        direction,
-        point,
-    };
+    let turning =
+        |direction: Vector3<f64>, point: Vector3<f64>| Joint { rotary: true, direction, point };
     let wrist = Vector3::new(of.a1 + of.a2, of.b, of.c1 + of.c2 + of.c3);
     let joints = vec![
         turning(Vector3::z(), Vector3::zeros()),
@@ -97,8 +94,8 @@ fn arms_with_a_spherical_wrist_have_the_published_solutions() {
                 parameters.c1 + parameters.c2 + parameters.c3 + parameters.c4,
             );
             let chain = opw_chain(&parameters, flange, Some(Vector3::x()));
-            let solver = Solver::new(chain.clone(), &[0, 1, 2, 3, 4, 5], Joints::default())
-                .expect("an arm");
+            let solver =
+                Solver::new(chain.clone(), &[0, 1, 2, 3, 4, 5], Joints::default()).expect("an arm");
             let values: Joints = std::array::from_fn(|joint| match joint {
                 0..6 => rng.range(-3.0, 3.0),
                 _ => 0.0,
@@ -109,7 +106,9 @@ fn arms_with_a_spherical_wrist_have_the_published_solutions() {
             }
             let pose = pose_at(&chain, &values);
             let reached = chain.forward(&values);
-            assert!((reached.tip - pose.tip).norm() < 1e-9 && angle(reached.edge, pose.edge) < 1e-9);
+            assert!(
+                (reached.tip - pose.tip).norm() < 1e-9 && angle(reached.edge, pose.edge) < 1e-9
+            );
             let Ok(solutions) = solver.inverse(&pose, &Joints::default(), 1e-9) else {
                 panic!("no solution at {values:?}");
             };

@@ -1,0 +1,108 @@
+//! Robots: what is beyond the tool's pose stands still, or gives way without winding up.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use crate::common::post;
+use post_testruns::read_back::{Model, angle, blocks, points};
+
+/// A cut three times around a bowl, the tool leaning outwards by 30 degrees.
+fn bowl() -> String {
+    let mut text = String::from("TOOL PATH/BOWL,TOOL,T1\nLOAD/TOOL,1\nSPINDL/RPM,9000,CLW\n");
+    for step in 0..=108 {
+        let (sine, cosine) = libm::sincos(f64::from(step) * std::f64::consts::PI / 18.0);
+        let (lean, up) = libm::sincos(0.52);
+        let axis = [lean * cosine, lean * sine, up];
+        let tip = [50.0 * cosine, 50.0 * sine, -0.1 * f64::from(step)];
+        if step == 0 {
+            let above: [f64; 3] = std::array::from_fn(|place| tip[place] + 40.0 * axis[place]);
+            let [x, y, z] = above;
+            let [i, j, k] = axis;
+            let _ = write!(
+                text,
+                "RAPID\nGOTO/{x:.4},{y:.4},{z:.4},{i:.9},{j:.9},{k:.9}\nFEDRAT/900,MMPM\n"
+            );
+        }
+        let ([x, y, z], [i, j, k]) = (tip, axis);
+        let _ = writeln!(text, "GOTO/{x:.4},{y:.4},{z:.4},{i:.9},{j:.9},{k:.9}");
+    }
+    text + "RAPID\nGOTO/0,0,90\nSPINDL/OFF\nEND-OF-PATH\nFINI\n"
+}
+
+/// The blocks of a program of `machine`, the tool being `length` long, each within tolerance of the CL file's next points.
+fn posted(machine: &str, length: f64, text: &str) -> Vec<Vec<f64>> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("part.cls");
+    fs::write(&file, text).unwrap();
+    let length_said = length.to_string();
+    let run = post(&[
+        "-q",
+        "-m",
+        machine,
+        "--tool-length",
+        &length_said,
+        "-o",
+        "-",
+        file.to_str().unwrap(),
+    ]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let model = Model::new(machine, None);
+    let names: Vec<&str> = model.axes.iter().map(|axis| axis.name.as_str()).collect();
+    let blocks = blocks(&run.out, &names, &[]);
+    let mut next = 0;
+    for point in points(text) {
+        let near = |block: &post_testruns::read_back::Block| {
+            let pose = model.pose(&block.words, length);
+            (pose.tip - point.tip).norm() < 0.005 && angle(pose.axis, point.axis) < 0.11
+        };
+        let found = blocks[next..].iter().position(near);
+        next += found.unwrap_or_else(|| panic!("CL line {} is not met", point.line));
+    }
+    blocks.into_iter().map(|block| block.words).collect()
+}
+
+/// How far a word goes in all.
+fn span(words: &[Vec<f64>], place: usize) -> f64 {
+    let values = || words.iter().map(|words| words[place]);
+    values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+}
+
+/// A spindle across the flange goes around a bowl again and again: it keeps its heading, and no axis winds up.
+#[test]
+fn an_arm_goes_around_a_bowl_without_winding_up() {
+    let words = posted("kr6-r700", 60.0, &bowl());
+    for axis in [3, 5] {
+        assert!(span(&words, axis) < 200.0, "A{} goes {}", axis + 1, span(&words, axis));
+    }
+}
+
+/// Where the last axis has nothing to do it does nothing.
+#[test]
+fn an_axis_to_spare_stands_still() {
+    let text =
+        fs::read_to_string(crate::common::root().join("tests/machines/kr6-r700.cls")).unwrap();
+    let words = posted("kr6-r700", 60.0, &text);
+    let cuts = &words[4..];
+    assert!(span(cuts, 5) < 30.0, "A6 goes {}", span(cuts, 5));
+}
+
+/// What a robot's program is written in for its own control is not read back, and it is said so.
+#[test]
+fn programs_of_rapid_are_refused_by_who_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("dome.mod");
+    let out = out.to_str().unwrap();
+    let cl = "tests/machines/kr6-r700.cls";
+    let rapid = ["-m", "kr6-r700", "--set", "control.dialect=rapid", "--tool-length", "60"];
+    let run = post(&[&rapid[..], &["-q", "-o", out, cl]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let text = fs::read_to_string(out).unwrap();
+    assert!(text.lines().any(|line| {
+        line.starts_with("MoveAbsJ [[") && line.contains("],[9E9,") && line.contains("\\T:=")
+    }));
+    for verb in [&["verify", out, "--against", cl][..], &["predict", out]] {
+        let run = post(&[verb, &rapid[..4]].concat());
+        assert_eq!(run.code, 1, "{}", run.out);
+        assert!(run.err.contains("tells no vocabulary"), "{}", run.err);
+    }
+}

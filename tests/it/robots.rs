@@ -76,14 +76,25 @@ fn an_arm_goes_around_a_bowl_without_winding_up() {
     }
 }
 
-/// Where the last axis has nothing to do it does nothing.
+/// A rail stands still while the arm reaches all that is asked for, and goes along where it does not.
 #[test]
-fn an_axis_to_spare_stands_still() {
-    let text =
-        fs::read_to_string(crate::common::root().join("tests/machines/kr6-r700.cls")).unwrap();
-    let words = posted("kr6-r700", 60.0, &text);
-    let cuts = &words[4..];
-    assert!(span(cuts, 5) < 30.0, "A6 goes {}", span(cuts, 5));
+fn a_rail_stands_still_where_the_arm_reaches() {
+    let holes = |apart: f64| {
+        let hole = |place: i32| {
+            let y = apart * f64::from(place);
+            format!(
+                "RAPID\nGOTO/0,{y},30,0,0,1\nFEDRAT/500,MMPM\nGOTO/0,{y},0\nRAPID\nGOTO/0,{y},30\n"
+            )
+        };
+        let holes: String = (-3..=3).map(hole).collect();
+        format!(
+            "TOOL PATH/HOLES,TOOL,T1\nLOAD/TOOL,1\nSPINDL/RPM,9000,CLW\n{holes}SPINDL/OFF\nFINI\n"
+        )
+    };
+    let near = posted("irb4600-rail", 100.0, &holes(15.0));
+    assert!(span(&near, 0) == 0.0, "the rail goes {}", span(&near, 0));
+    let far = posted("irb4600-rail", 100.0, &holes(700.0));
+    assert!(span(&far, 0) > 1000.0, "the rail goes {}", span(&far, 0));
 }
 
 /// What a robot's program is written in for its own control is not read back, and it is said so.

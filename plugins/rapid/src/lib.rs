@@ -66,7 +66,7 @@ const OPTIONS: &[OptionSpec] = &[
         "tool0",
         "Tool of every move: the control takes load and velocity from it, and no position.",
     ),
-    OptionSpec::lines("optional_stop", "Stop;", "Lines of an optional stop."),
+    OptionSpec::lines("optional_stop", "OptionalStop;", "Lines of an optional stop."),
 ];
 
 /// A name that RAPID takes: letters, digits and underlines, a letter first.
@@ -140,13 +140,13 @@ impl Dialect for Rapid {
 
     /// No length is compensated by the control: values of axes are those with the tool that the program is for.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::LENGTH_IN_OFFSET
+        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET
     }
 
     fn relies_on(&self) -> Vec<String> {
         let mut relies = vec![
             "MoveAbsJ leads all axes of the arm and beside it evenly in time, so that they arrive together, whatever tool and work object are".to_owned(),
-            "the procedures SpindleCw, SpindleCcw, SpindleOrient, SpindleOff, CoolantOn, CoolantOff and ChangeTool are on the control, where the program calls them".to_owned(),
+            "the procedures SpindleCw, SpindleCcw, SpindleOrient, SpindleOff, CoolantOn, CoolantOff, OptionalStop and ChangeTool are on the control, where the program calls them".to_owned(),
         ];
         if self.zone != "fine" {
             relies.push(format!(

@@ -7,6 +7,9 @@ use std::f64::consts::TAU;
 
 use super::metric::ARM;
 use super::solution::{AxisSolution, ChoiceAxes, SolutionSummary};
+use super::trellis::{ArrivalKind, CutChecker, CutEnd, Trellis, TrellisState, pose};
+use crate::accuracy::Placer;
+use crate::program::StraightMove;
 use post_machine::kinematics::{Joint, Joints, Pose, Solver, Unreachable};
 
 /// Steps in which a turn that is free is tried, radians: 30°.
@@ -24,6 +27,9 @@ const MOST_STANDS: usize = 96;
 /// An axis that stands at the end of its travel stands so far inside of it, radians or mm: between two points it may go a
 /// little farther than at both.
 const INSIDE: f64 = 2e-3;
+
+/// Of more states than this nothing goes on off the part but by solutions that all come to.
+const MOST_CONTINUED: usize = 8;
 
 /// Up to such a turn a cut is taken to come through, away from the ends of travel, radians.
 const SURE: f64 = 0.1;
@@ -254,5 +260,77 @@ impl ChoiceAxes {
                 None
             }
         })
+    }
+}
+
+impl Trellis {
+    /// Adds the stands that go on from the cheapest states, off the part, with the joints beyond what a pose needs where
+    /// they are.
+    pub(super) fn rapids_on(
+        &self,
+        placer: &Placer,
+        target: &Pose,
+        before: std::ops::Range<usize>,
+        stands: &mut Vec<AxisSolution>,
+    ) {
+        let mut states: Vec<&TrellisState> =
+            self.states[before].iter().filter(|state| state.cost.is_way()).collect();
+        states.sort_by(|a, b| a.cost.order(&b.cost));
+        for state in states.into_iter().take(MOST_CONTINUED) {
+            self.axes.rapid_on(placer.solver(), target, &state.joints, stands);
+        }
+    }
+
+    /// Continues each state in a cut of a chain that has joints beyond what a pose needs.
+    pub(super) fn surplus_on(
+        &mut self,
+        placer: &Placer,
+        motion: &StraightMove,
+        before: std::ops::Range<usize>,
+        judge: &mut dyn CutChecker,
+    ) {
+        let first = self.states.len();
+        let Some(last) = self.layers.last() else {
+            return;
+        };
+        let begins = last.kind != ArrivalKind::Cut;
+        let (from_pose, target) = (pose(&last.motion), &pose(motion));
+        let solver = placer.solver();
+        for index in before {
+            let state = self.states[index];
+            if !state.cost.is_way() {
+                continue;
+            }
+            let mut next: Vec<(Joints, u8)> = Vec::new();
+            let way = state.branch & (ALONG | HEADING);
+            if begins || way == ALONG {
+                let goes = self.axes.along_next(solver, target, &state.joints);
+                next.extend(goes.map(|joints| (joints, ALONG)));
+            }
+            if begins || way == HEADING {
+                let goes = self.axes.heading_next(solver, target, &state.joints);
+                next.extend(goes.map(|joints| (joints, HEADING)));
+            }
+            if begins || next.is_empty() {
+                let others = self.axes.surplus_next(solver, target, &state.joints);
+                next.extend(others.into_iter().map(|joints| (joints, way)));
+            }
+            for (mut joints, branch) in next {
+                if self.axes.stand_still(&state.joints, &mut joints)
+                    && (self.axes.sure(solver, &state.joints, &joints)
+                        || judge.passes(
+                            placer,
+                            motion,
+                            CutEnd { pose: &from_pose, joints: &state.joints },
+                            CutEnd { pose: target, joints: &joints },
+                        ))
+                {
+                    let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
+                    let branch = branch | solver.branch_of_arm(&joints);
+                    let new = self.after(index, joints, branch, hits);
+                    self.keep(first, new);
+                }
+            }
+        }
     }
 }

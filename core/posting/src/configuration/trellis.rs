@@ -60,9 +60,6 @@ pub(crate) const HELD: u8 = u8::MAX;
 /// More states than this at one point are not followed: the cheapest of them are.
 const MOST_STATES: usize = 64;
 
-/// Of more states than this nothing goes on off the part but by solutions that all come to.
-const MOST_CONTINUED: usize = 8;
-
 /// A pole joint is eased where the tolerance leaves it more than this, radians (2°): elsewhere little would be
 /// gained, and the points stay exact.
 const WORTH: f64 = 0.034_906_585_039_886_59;
@@ -410,7 +407,7 @@ impl Trellis {
     ///
     /// If only states with the same turns were compared, a path that comes and goes at a pole would
     /// add a turn to either side each time, until there are [`MOST_STATES`] at every point.
-    fn keep(&mut self, first: usize, state: TrellisState) {
+    pub(super) fn keep(&mut self, first: usize, state: TrellisState) {
         let axes = &self.axes;
         let like = |known: &&mut TrellisState| {
             axes.alike((known.branch, &known.joints), (state.branch, &state.joints))
@@ -689,7 +686,7 @@ impl Trellis {
 
     /// The state that stands at `joints` and comes from another by a cut that adds `hits`.
     #[inline]
-    fn after(&self, from: usize, joints: Joints, branch: u8, hits: u32) -> TrellisState {
+    pub(super) fn after(&self, from: usize, joints: Joints, branch: u8, hits: u32) -> TrellisState {
         let state = &self.states[from];
         let cost = state.cost.and(self.way_on(state, &joints), self.measure.against(&joints));
         TrellisState {
@@ -766,76 +763,6 @@ impl Trellis {
             self.keep(first, new);
         }
         self.searched = searched;
-    }
-
-    /// Adds the stands that go on from the cheapest states, off the part, with the joints beyond what a pose needs where
-    /// they are.
-    fn rapids_on(
-        &self,
-        placer: &Placer,
-        target: &Pose,
-        before: std::ops::Range<usize>,
-        stands: &mut Vec<AxisSolution>,
-    ) {
-        let mut states: Vec<&TrellisState> =
-            self.states[before].iter().filter(|state| state.cost.is_way()).collect();
-        states.sort_by(|a, b| a.cost.order(&b.cost));
-        for state in states.into_iter().take(MOST_CONTINUED) {
-            self.axes.rapid_on(placer.solver(), target, &state.joints, stands);
-        }
-    }
-
-    /// Continues each state in a cut of a chain that has joints beyond what a pose needs.
-    fn surplus_on(
-        &mut self,
-        placer: &Placer,
-        motion: &StraightMove,
-        before: std::ops::Range<usize>,
-        judge: &mut dyn CutChecker,
-    ) {
-        let first = self.states.len();
-        let Some(last) = self.layers.last() else {
-            return;
-        };
-        let begins = last.kind != ArrivalKind::Cut;
-        let (from_pose, target) = (pose(&last.motion), &pose(motion));
-        let solver = placer.solver();
-        for index in before {
-            let state = self.states[index];
-            if !state.cost.is_way() {
-                continue;
-            }
-            let mut next: Vec<(Joints, u8)> = Vec::new();
-            let way = state.branch & (ALONG | HEADING);
-            if begins || way == ALONG {
-                let goes = self.axes.along_next(solver, target, &state.joints);
-                next.extend(goes.map(|joints| (joints, ALONG)));
-            }
-            if begins || way == HEADING {
-                let goes = self.axes.heading_next(solver, target, &state.joints);
-                next.extend(goes.map(|joints| (joints, HEADING)));
-            }
-            if begins || next.is_empty() {
-                let others = self.axes.surplus_next(solver, target, &state.joints);
-                next.extend(others.into_iter().map(|joints| (joints, way)));
-            }
-            for (mut joints, branch) in next {
-                if self.axes.stand_still(&state.joints, &mut joints)
-                    && (self.axes.sure(solver, &state.joints, &joints)
-                        || judge.passes(
-                            placer,
-                            motion,
-                            CutEnd { pose: &from_pose, joints: &state.joints },
-                            CutEnd { pose: target, joints: &joints },
-                        ))
-                {
-                    let hits = judge.hits(placer, ArrivalKind::Cut, &state.joints, &joints);
-                    let branch = branch | solver.branch_of_arm(&joints);
-                    let new = self.after(index, joints, branch, hits);
-                    self.keep(first, new);
-                }
-            }
-        }
     }
 
     /// Continues each state in a cut of two linear axes, one of which may go through the centre line or a rotary axis be

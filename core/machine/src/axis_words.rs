@@ -131,7 +131,7 @@ fn work_zero(solver: &Solver, axes: impl Iterator<Item = (usize, f64)>) -> Optio
         zero[joint] = -reading;
     }
     let turns = solver.chain().turns(&zero);
-    solver.place(Vector3::zeros(), &mut zero, &turns).ok()?;
+    solver.place_zero(&mut zero, &turns).ok()?;
     Some(zero)
 }
 

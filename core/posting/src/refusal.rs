@@ -1,7 +1,7 @@
 //! What is said of a point that cannot be reached and of a move that cannot be made.
 
 use crate::accuracy::{LineariseError, PlacementError};
-use crate::program::StraightMove;
+use crate::program::{MoveFeed, StraightMove};
 use post_machine::axis_words;
 use post_machine::axis_words::AxisWords;
 use post_machine::dependent_limit::DependentLimit;
@@ -151,6 +151,7 @@ pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic
                     axis.name,
                     beyond(machine, &over),
                     match tried {
+                        0 => "no way around it was found for the other axes".to_owned(),
                         1 => "there is no other solution".to_owned(),
                         tried => format!("none of the {tried} solutions stays inside travel"),
                     }
@@ -470,13 +471,20 @@ pub(crate) fn stuck(
         LineariseError::Jump { joint, from, to } => Diagnostic::error(
             "jump",
             format!(
-                "{} must jump from {:.3}° to {:.3}° within this cut: no path of the axes keeps the tolerance",
+                "{} must jump from {:.3}° to {:.3}° {}: no path of the axes keeps the tolerance",
                 machine.axes[*joint].name,
                 machine.axes[*joint].reading(*from),
-                machine.axes[*joint].reading(*to)
+                machine.axes[*joint].reading(*to),
+                match motion.pace {
+                    MoveFeed::Rapid => "on this way off the part",
+                    _ => "within this cut",
+                }
             ),
         )
-        .help("its travel ends here and the other solution lies far away: retract before this line, or set the part differently"),
+        .help(match machine.axes[*joint].travel {
+            Some(_) => "its travel ends here and the other solution lies far away: retract before this line, or set the part differently",
+            None => "the other solution lies far away: retract before this line, or set the part differently",
+        }),
         LineariseError::Model(message) => Diagnostic::error(
             "model",
             format!("the error model {} cannot answer: {message}", machine.accuracy.model),

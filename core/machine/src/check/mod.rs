@@ -112,6 +112,8 @@ impl Check {
                 "closed form"
             } else if probe.solver().planar() {
                 "closed form, in the plane of two linear axes; what lies off it is refused"
+            } else if probe.solver().has_arm() {
+                "closed form of a robot's arm, and from point to point numerically; each solution verified by the forward product"
             } else {
                 "numerically, from the point before; each solution verified by the forward product"
             }

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::chain::{Chain, Joints, Pose, square, turn};
+use super::chain::{Chain, Joints, Pose, Turns, square, turn};
 use super::fault::Unreachable;
 use super::inverse::{SETTINGS, SolutionMethod, Solver, VERIFIED};
 use super::numeric;
@@ -86,10 +86,29 @@ impl Solver {
         found
     }
 
+    /// Puts all linear axes that are solved for, rails among them, where they bring the tip nearest to the part origin: from
+    /// there their words count.
+    ///
+    /// # Errors
+    /// [`Unreachable::Linear`] if three linear axes span no volume at these angles.
+    pub fn place_zero(&self, joints: &mut Joints, turns: &Turns) -> Result<(), Unreachable> {
+        let SolutionMethod::Numeric { linear, surplus, .. } = &self.form else {
+            return self.place(Vector3::zeros(), joints, turns);
+        };
+        let rails = surplus.iter().filter(|joint| !self.chain.joints()[**joint].rotary);
+        let all: Vec<usize> = linear.iter().chain(rails).copied().collect();
+        numeric::approach(&self.chain, &all, Vector3::zeros(), joints);
+        Ok(())
+    }
+
+    /// Six rotary axes are an arm whose solutions come from formulas.
+    pub fn has_arm(&self) -> bool {
+        matches!(&self.form, SolutionMethod::Numeric { arm: Some(_), .. })
+    }
+
     /// Whether [`Solver::inverse`] gives solutions all around for the turn about the tool.
     pub fn spins(&self) -> bool {
-        self.chain.edge().is_none()
-            && matches!(&self.form, SolutionMethod::Numeric { arm: Some(_), .. })
+        self.chain.edge().is_none() && self.has_arm()
     }
 
     /// The branch of a robot's arm on which the axes stand; 0 of other chains.

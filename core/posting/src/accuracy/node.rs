@@ -378,7 +378,7 @@ impl Placer {
         let joints = self.solver.search_holding(target, &start, &holding, self.axis_tolerance);
         let joints = joints.map_err(PlacementError::Unreachable)?;
         match self.turned_beyond(&joints) {
-            Some(over) => Err(PlacementError::OverTravel { over, tried: 1 }),
+            Some(over) => Err(PlacementError::OverTravel { over, tried: 0 }),
             None => Ok(joints),
         }
     }

@@ -62,6 +62,14 @@ impl RotaryAxis {
         self.require.is_some_and(|side| wrong_side(value + self.zero, side))
     }
 
+    /// It goes on towards an end of its travel that is nearer than `way`.
+    pub(super) fn ends_towards(&self, from: &Joints, to: &Joints, way: f64) -> bool {
+        let (from, to) = (from[self.joint], to[self.joint]);
+        self.travel.is_some_and(|[least, most]| {
+            (to < from && to - least < way) || (to > from && most - to < way)
+        })
+    }
+
     /// Inside travel, and on no side that is forbidden.
     #[inline]
     pub(super) fn allows(&self, value: f64) -> bool {

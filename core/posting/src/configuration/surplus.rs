@@ -6,7 +6,7 @@
 use std::f64::consts::TAU;
 
 use super::metric::ARM;
-use super::solution::{AxisSolution, ChoiceAxes, SolutionSummary};
+use super::solution::{AxisSolution, ChoiceAxes, RotaryAxis, SolutionSummary};
 use super::trellis::{ArrivalKind, CutChecker, CutEnd, Trellis, TrellisState, pose};
 use crate::accuracy::Placer;
 use crate::program::StraightMove;
@@ -34,7 +34,7 @@ const MOST_CONTINUED: usize = 8;
 /// Up to such a turn a cut is taken to come through, away from the ends of travel, radians.
 const SURE: f64 = 0.1;
 
-/// Set in the branch of states whose rails go along with the tool.
+/// Set in the branch of states whose rails, or else a positioner, go along with the tool.
 pub(super) const ALONG: u8 = 1 << 6;
 
 /// Set in the branch of states whose tool keeps its heading against the part.
@@ -193,11 +193,17 @@ impl ChoiceAxes {
         };
         let held = search(from, surplus);
         let mut next: Vec<Joints> = held.filter(|held| self.reaches(held)).into_iter().collect();
-        if next.first().is_some_and(|next| !solver.turns_far(from, next)) {
+        if next.first().is_some_and(|next| self.sure(solver, from, next)) {
             return next;
         }
-        // What would pass its travel stands at its end.
-        let ended = held.and_then(|held| self.passed(&held));
+        // What would pass its travel stands at its end, and what comes near to it where it is.
+        let ended = held.and_then(|held| {
+            self.passed(&held).or_else(|| {
+                let ends = |axis: &&RotaryAxis| axis.ends_towards(from, &held, SURE);
+                let axis = self.turning.iter().find(ends)?;
+                Some((axis.joint, from[axis.joint]))
+            })
+        });
         let mut start = *from;
         if let Some((joint, value)) = ended {
             start[joint] = value;
@@ -217,13 +223,18 @@ impl ChoiceAxes {
         next
     }
 
-    /// The way on in a cut to `pose` on which rails go along with the tool, as little as they can.
+    /// The way on in a cut to `pose` on which rails, or else a positioner, go along with the tool, as little as they can.
     pub(super) fn along_next(&self, solver: &Solver, pose: &Pose, from: &Joints) -> Option<Joints> {
         let turns = |joint: &usize| solver.chain().joints()[*joint].rotary;
         let surplus = solver.surplus();
-        let holding: Vec<usize> = surplus.iter().copied().filter(turns).collect();
+        let mut holding: Vec<usize> = surplus.iter().copied().filter(turns).collect();
         if holding.len() == surplus.len() {
-            return None;
+            // Of a tool that turns the last is the turn about it.
+            let spins = usize::from(solver.chain().edge().is_none());
+            holding.drain(..surplus.len().saturating_sub(spins));
+            if holding.len() == surplus.len() {
+                return None;
+            }
         }
         let next = solver.search_holding(pose, from, &holding, self.axis_tolerance).ok()?;
         self.reaches(&next).then_some(next)

@@ -65,7 +65,7 @@ pub const LIBRARY: &[Row] = &[
     row("router", "ncl", 60.0, "out-of-reach"),
     row("rotary-delta", "cls", 40.0, "over-travel"),
     row("tangential-knife", "cls", 0.0, "out-of-reach"),
-    row("tripod", "cls", 80.0, "over-travel"),
+    row("tripod", "cls", 40.0, "over-travel"),
     row("ultrasonic-knife", "ncl", 50.0, "over-travel"),
     row("umc-750", "ncl", 100.0, "over-travel"),
     row("variaxis", "cls", 100.0, "over-travel"),
@@ -75,6 +75,7 @@ pub const LIBRARY: &[Row] = &[
     row("vmc-b", "apt", 100.0, "over-travel"),
     row("xyzac-trt", "cls", 40.0, "over-travel"),
     row("xyzbc-trt", "ncl", 40.0, "over-travel"),
+    row("z3-head", "cls", 120.0, "over-travel"),
 ];
 
 /// Words that are rounded move the tip by so much, mm.

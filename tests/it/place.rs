@@ -6,7 +6,7 @@ use crate::library::LIBRARY;
 use std::fs;
 use std::path::Path;
 
-use common::{Run, command, post, read_json, run};
+use common::{Run, command, post, read_json, root, run};
 use nalgebra::{Rotation3, Vector3};
 use post_testruns::read_back::{Model, blocks, table};
 use serde_json::Value;
@@ -65,6 +65,11 @@ fn every_machine_of_the_library_is_placed_from_where_it_does_not_fit() {
     let mut moved = 0;
     // Where rotary axes place the tip, no mount follows from travel: that is refused, see below.
     for row in LIBRARY.iter().filter(|row| !row.machine.starts_with("lathe-xzc")) {
+        // What legs reach is held where the program is made, and not known where a mount is looked for.
+        let machine = root().join("machines").join(format!("{}.toml", row.machine));
+        if fs::read_to_string(machine).unwrap().contains("[[leg]]") {
+            continue;
+        }
         let file = format!("tests/machines/{}.{}", row.machine, row.ending);
         let length = row.length.to_string();
         // Its pole is passed where the control keeps the tip.

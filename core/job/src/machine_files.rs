@@ -29,7 +29,7 @@ pub fn load(
     let read = |path: &Path| read(session, path);
     let source = source(name, named, &read)?;
     let mut machine = examine(source, named, settings, &read)?.machine?;
-    tools::equip(session, &mut machine)?;
+    equip(session, &mut machine)?;
     let heads = machine.heads.iter().map(|head| &head.machine);
     for solid in std::iter::once(&machine).chain(heads).flat_map(|machine| &machine.solids) {
         session.read_files().note("the solid", &solid.file);
@@ -41,6 +41,33 @@ pub fn load(
         }
     }
     Ok(machine)
+}
+
+/// Puts into a machine what the files have that its own names: tools, and errors of axes.
+///
+/// # Errors
+/// A file that cannot be read, or what is wrong with it.
+pub fn equip(session: &Session, machine: &mut Machine) -> Result<(), Failure> {
+    tools::equip(session, machine)?;
+    take_errors(session, machine)?;
+    machine.heads.iter_mut().try_for_each(|head| take_errors(session, &mut head.machine))
+}
+
+fn take_errors(session: &Session, machine: &mut Machine) -> Result<(), Failure> {
+    for table in std::mem::take(&mut machine.error_tables) {
+        let text = match table.file.is_file() {
+            true => read(session, &table.file),
+            false => {
+                let message = format!("{}: there is no such file", table.file.display());
+                Err(Missing { message, help: None })
+            }
+        };
+        let source = text.map_err(|missing| {
+            Diagnostic::error("machine-errors", missing.message).at(table.place.clone())
+        })?;
+        machine.take_errors(&table, &source.text).map_err(|fault| *fault)?;
+    }
+    Ok(())
 }
 
 /// Reads the text of a file, which may be open in an editor and differ there.

@@ -25,6 +25,8 @@ pub struct AxisWords {
     linear: Vec<Word>,
     /// Axis values with the tip on the part origin and every rotary axis at zero.
     zero: Joints,
+    /// Axis positions hold errors, so that the control's own frames are not theirs.
+    erring: bool,
     /// The linear words are X, Y and Z, one each.
     cartesian: bool,
     /// The tilted plane whose coordinates the linear words are.
@@ -179,7 +181,10 @@ impl AxisWords {
         let coupled = machine.word_map.as_ref().filter(|map| map.couples());
         Self {
             tcp: machine.control.tcp,
-            cartesian: linear.iter().map(name).eq(["X", "Y", "Z"]) && !scaled,
+            cartesian: linear.iter().map(name).eq(["X", "Y", "Z"])
+                && !scaled
+                && machine.errors.is_empty(),
+            erring: !machine.errors.is_empty(),
             rotary,
             linear,
             zero: [0.0; MAX_AXES],
@@ -196,7 +201,7 @@ impl AxisWords {
             words.any(|word| word.coordinate == wanted)
         };
         let unscaled = self.linear.windows(2).all(|pair| pair[0].unit == pair[1].unit);
-        let whole = self.linear.len() == 3 && (0..3).all(coordinate) && unscaled;
+        let whole = !self.erring && self.linear.len() == 3 && (0..3).all(coordinate) && unscaled;
         whole.then(|| Self { plane: Some(plane), ..self.clone() })
     }
 

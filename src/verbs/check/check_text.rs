@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use post_job::summary::warnings;
 use post_job::text_table::NamedValues;
 use post_machine::check::{
-    AxisLine, AxisReadout, Check, Comparison, DifferenceShare, DirectionSolutions, LegsReport,
-    LimitReport, LimitRoom, MachineClass, Pole, ReachableCone, Sign, Volume, number,
+    AxisLine, AxisReadout, Check, Comparison, DifferenceShare, DirectionSolutions, ErrorsReport,
+    LegsReport, LimitReport, LimitRoom, MachineClass, Pole, ReachableCone, Sign, Volume, number,
 };
 
 /// Width of the names.
@@ -43,6 +43,9 @@ pub fn check(check: &Check) -> String {
     }
     for limit in &check.limits {
         dependent_limit(&mut rows, limit);
+    }
+    if let Some(of_machine) = &check.errors {
+        errors(&mut rows, of_machine);
     }
     if let Some(of_machine) = &check.legs {
         legs(&mut rows, of_machine);
@@ -286,6 +289,27 @@ fn dependent_limit(rows: &mut NamedValues, limit: &LimitReport) {
             None => "nowhere".to_owned(),
         };
         rows.row("", format_args!("{with}{} {room}", limit.axis));
+    }
+}
+
+fn errors(rows: &mut NamedValues, of_machine: &ErrorsReport) {
+    for axis in &of_machine.axes {
+        let [least, most] = axis.known.map(|end| number(end, 3));
+        rows.row(format!("errors of {}", axis.axis), format_args!("known from {least} to {most}"));
+        axis.largest.iter().for_each(|told| rows.row("", told));
+    }
+    let [x, y, z] = of_machine.tip.map(|value| number(value, 5));
+    rows.row(
+        "errors together",
+        format_args!(
+            "the tip stands up to {} mm off, ({x}, {y}, {z}), at {}: posted words take it out",
+            number(of_machine.tip_mm, 5),
+            readings(&of_machine.tip_at)
+        ),
+    );
+    if of_machine.axis_deg > 0.0 {
+        let angle = number(of_machine.axis_deg, 5);
+        rows.row("", format_args!("the tool axis leans up to {angle}° off, which stays"));
     }
 }
 

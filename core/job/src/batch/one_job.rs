@@ -26,7 +26,7 @@ use crate::plugin_finder;
 use crate::posting_pass::PostingExtras;
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings};
-use crate::{operations, tools, unused_options};
+use crate::{machine_files, operations, unused_options};
 
 /// What came of a job, and whether the journal knew it.
 pub struct JobResult {
@@ -101,7 +101,7 @@ impl PreparedJob {
         };
         let texts = inputs.machine(&arguments.machine);
         let mut machine = texts.load(&arguments.over.settings())?;
-        tools::equip(session, &mut machine)?;
+        machine_files::equip(session, &mut machine)?;
         Ok(Self {
             // Of a plugin that cannot be opened posting tells more.
             key: key::key(study, job, &cl, &texts, &machine).ok(),

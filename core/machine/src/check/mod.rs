@@ -7,6 +7,7 @@
 
 mod class;
 mod commission;
+mod errors;
 mod leaving;
 mod legs;
 mod limits;
@@ -25,6 +26,7 @@ use serde::Serialize;
 
 pub use class::{AxisLine, MachineClass};
 pub use commission::{Commission, CommissionMove};
+pub use errors::{AxisErrorsReport, ErrorsReport};
 pub use legs::{LegReport, LegsReport};
 pub use limits::{LimitReport, LimitRoom};
 pub use nominal::{Comparison, DifferenceShare, Differing, compare};
@@ -66,6 +68,9 @@ pub struct Check {
     /// What limits that depend on other axes leave of the travel.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub limits: Vec<LimitReport>,
+    /// What errors of axes do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub errors: Option<ErrorsReport>,
     /// What legs make of the axes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub legs: Option<LegsReport>,
@@ -124,6 +129,7 @@ impl Check {
             words: words::told(&probe),
             limits,
             legs,
+            errors: errors::told(&probe),
             typical,
             poles,
             reach,

@@ -89,7 +89,9 @@ struct Worded<'a> {
 impl<'a> Worded<'a> {
     fn new(machine: &'a Machine, length: f64) -> Result<Self, Differing> {
         let no_zero = || Differing::NoZero { machine: machine.name.clone() };
-        let solver = machine.solver(length).map_err(|_| no_zero())?;
+        // Errors that depend on position are told by themselves.
+        let lines = Machine { errors: [].into(), ..machine.clone() };
+        let solver = lines.solver(length).map_err(|_| no_zero())?;
         // What the control shows of every rotary axis is zero, the tip on the part origin.
         let mut zero: Joints = std::array::from_fn(|place| {
             machine.axes.get(place).filter(|axis| axis.joint.rotary).map_or(0.0, |axis| -axis.zero)

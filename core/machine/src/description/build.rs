@@ -328,6 +328,7 @@ impl Builder<'_> {
         let tool_axis = tool_axis.and_then(|axis| self.direction("the tool axis", axis));
         let tool_axis = tool_axis.unwrap_or_else(Vector3::z);
         let edge = file.tool.edge.as_ref().and_then(|edge| self.edge(edge, tool_axis));
+        let (errors, error_tables) = self.axis_errors(&file.error, &mut axes, gauge);
         let length_axis = self.length_axis(file.tool.length_axis.as_ref(), &axes);
         let solution = self.solution(file, &axes);
         let rewind = file.rewind.as_ref().and_then(|rewind| self.rewind(rewind));
@@ -354,6 +355,8 @@ impl Builder<'_> {
             name: file.name.get_ref().clone(),
             control: self.control(file.control.get_ref(), &axes, options, own.arcs),
             axes,
+            errors,
+            error_tables,
             limits,
             word_map,
             mount,
@@ -391,6 +394,7 @@ impl Builder<'_> {
         // With a number that has none, or a direction that is none, its solver would search without end.
         if self.faults.is_empty() {
             self.check_chain(&machine, file.chain.span());
+            self.check_errors(&machine, file.error.keys().next().map_or(0..0, Spanned::span));
         }
         Some(machine)
     }

@@ -9,6 +9,7 @@ use serde_json::json;
 use super::bodies::{BodyFile, ClearanceFile};
 use super::bounds::Bounds;
 use super::dependent::LimitFile;
+use super::errors::ErrorFile;
 use super::legs::LegFile;
 use super::motion::MotionFile;
 use super::plan::PlanFile;
@@ -84,6 +85,8 @@ keys! {
         tools: ToolsFile,
         /// The axes of the chain by their letters.
         axis: Spanned<BTreeMap<String, Spanned<AxisFile>>> = AXES,
+        /// Errors of axes that depend on where they stand, by their letters.
+        error: BTreeMap<Spanned<String>, Spanned<ErrorFile>> = AXES,
         /// Words of the program that are no axis values, by their letters.
         word: BTreeMap<Spanned<String>, Spanned<WordFile>> = AXES,
         /// Limits of axes that depend on other axes, each `[[limit]]` one.

@@ -27,6 +27,9 @@ pub(super) const MOST_OPTIONS: usize = 200;
 /// Limits that depend on other axes: each is held on every way.
 pub(super) const MOST_AXIS_LIMITS: usize = 32;
 
+/// Places at which the errors of an axis were measured.
+pub(super) const MOST_ERROR_ROWS: usize = 10_000;
+
 /// Legs: each is held on every way.
 pub(super) const MOST_LEGS: usize = 12;
 

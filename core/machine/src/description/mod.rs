@@ -10,6 +10,8 @@ mod choice;
 mod cl_words;
 mod dependent;
 mod echoes;
+mod error_rows;
+mod errors;
 mod file;
 mod frame;
 mod keys;
@@ -39,6 +41,7 @@ mod word;
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use nalgebra::Vector3;
 
@@ -50,6 +53,7 @@ pub use bodies::{
 pub use build::{Evaluated, MachineReading, examine, load};
 pub use choice::{Retract, Rewind, SolutionCriterion, SolutionRules};
 pub use cl_words::WordRule;
+pub use errors::{ErrorTable, ErrorUnits};
 pub use file::{
     ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
     InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, TcpFeedLength,
@@ -73,7 +77,7 @@ pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 use crate::dependent_limit::DependentLimit;
 use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::kinematics::{
-    Chain, Freedom, Joint, Joints, Leg, MAX_AXES, NoClosedForm, Second, Solver,
+    AxisErrors, Chain, Freedom, Joint, Joints, Leg, MAX_AXES, NoClosedForm, Second, Solver,
 };
 use crate::servo::Servo;
 use crate::word_map::WordMap;
@@ -94,6 +98,10 @@ pub struct Machine {
     pub name: String,
     /// Axes in chain order, from the workpiece to the tool.
     pub axes: Vec<Axis>,
+    /// Errors of axes that depend on where they stand.
+    pub errors: Arc<[AxisErrors]>,
+    /// Files of such errors, which [`Machine::take_errors`] takes.
+    pub error_tables: Vec<ErrorTable>,
     /// What must hold between the axes, beside the travel of each.
     pub limits: Vec<DependentLimit>,
     /// What words make of axis values; none where each word is the value of its axis.
@@ -400,6 +408,7 @@ impl Machine {
         let joints = self.axes.iter().map(|axis| axis.joint).collect();
         let tip = self.gauge - self.tool_axis * length;
         let chain = Chain::new(joints, self.mount, tip, self.tool_axis).with_edge(self.edge);
+        let chain = chain.with_errors(&self.errors);
         let freedom = Freedom {
             rotary: self.pointing(),
             still: (0..self.axes.len())
@@ -485,6 +494,7 @@ impl Machine {
                 && self.pointing().len() == 2
                 && linear_names(&self.axes) == BTreeSet::from(TIP_WORDS)
                 && self.heads.is_empty()
+                && self.errors.is_empty()
         })
     }
 
@@ -512,7 +522,7 @@ impl Machine {
     pub fn part_sits_anywhere(&self) -> bool {
         let plain =
             |axis: &Axis| !axis.joint.rotary && axis.second.is_none() && axis.indexed.is_none();
-        let alone = self.heads.is_empty() && self.limits.is_empty();
+        let alone = self.heads.is_empty() && self.limits.is_empty() && !self.errs();
         !self.mount_said && alone && self.axes.iter().all(plain)
     }
 
@@ -543,19 +553,36 @@ impl Machine {
         stands.collect::<Vec<_>>().join(" ")
     }
 
-    /// The words of a program hold for a part on `mount` alone: they are axis positions, and a rotary axis carries the
-    /// part; or ways between passes are those that bodies leave there.
-    pub fn holds_on_mount_alone(&self) -> bool {
-        let turns = |axis: &Axis| axis.joint.rotary && axis.carries_part;
-        let by_words = self.control.tcp == Tcp::Post && self.axes.iter().any(turns);
-        by_words || self.clearance.shortens_ways()
+    /// Errors that depend on position are taken out of the words.
+    pub fn errs(&self) -> bool {
+        !self.errors.is_empty() || !self.error_tables.is_empty()
     }
 
-    /// The words of a program hold for tools of one length alone: they are axis positions, and a head turns the tool.
+    /// The words of a program hold for a part on `mount` alone: they are axis positions, and a rotary axis carries the
+    /// part, or errors of axes are taken out of them; or ways between passes are those that bodies leave there.
+    pub fn holds_on_mount_alone(&self) -> bool {
+        let turns = |axis: &Axis| axis.joint.rotary && axis.carries_part;
+        let by_words = self.errs() || self.axes.iter().any(turns);
+        self.control.tcp == Tcp::Post && by_words || self.clearance.shortens_ways()
+    }
+
+    /// Why [`Machine::holds_on_mount_alone`].
+    pub fn one_mount(&self) -> &'static str {
+        if self.clearance.shortens_ways() {
+            "ways between passes are those that bodies leave"
+        } else if self.errs() {
+            "errors that depend on position are taken out of them"
+        } else {
+            "a rotary axis carries the part"
+        }
+    }
+
+    /// The words of a program hold for tools of one length alone: they are axis positions, and a head turns the tool, or
+    /// errors of axes are taken out of them.
     pub fn holds_on_length_alone(&self) -> bool {
         let first_linear = self.axes.iter().position(|axis| !axis.joint.rotary);
         let mut behind = self.axes.iter().skip(first_linear.unwrap_or(0));
-        self.control.tcp == Tcp::Post && behind.any(|axis| axis.joint.rotary)
+        self.control.tcp == Tcp::Post && (self.errs() || behind.any(|axis| axis.joint.rotary))
     }
 
     /// The head that `HEAD/name` swaps in.

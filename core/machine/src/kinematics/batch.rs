@@ -7,7 +7,7 @@ use fearless_simd::{Level, Simd};
 use nalgebra::Vector3;
 
 use super::chain::{
-    AxisLine, Chain, Joint, Joints, MAX_AXES, Pose, Turns, turn_about_x, turn_about_y,
+    AxisLine, Chain, Joint, Joints, MAX_AXES, Pose, Trace, Turns, turn_about_x, turn_about_y,
     turn_about_z, turn_askew,
 };
 use super::lane_math::sincos_all;
@@ -209,7 +209,7 @@ impl Turns {
 impl Chain {
     /// [`Chain::forward`] of each of `joints`, put behind what `poses` holds.
     pub fn forward_all(&self, joints: &[Joints], poses: &mut Vec<Pose>) {
-        if self.edge().is_some() {
+        if self.edge().is_some() || !self.errors().is_empty() {
             poses.extend(joints.iter().map(|joints| self.forward(joints)));
             return;
         }
@@ -259,10 +259,29 @@ impl Chain {
 
     /// [`Chain::trace`] of the first `count` points of `at`; the leading edge of a tool that has one is left out.
     pub fn trace_all(&self, at: &AxisBatch, count: usize, out: &mut Traces) {
+        if !self.errors().is_empty() {
+            return self.trace_each(at, count, out);
+        }
         widely(
             #[inline(always)]
             || self.trace_lanes(at, count, out),
         );
+    }
+
+    /// [`Chain::trace_all`] one by one.
+    #[cold]
+    fn trace_each(&self, at: &AxisBatch, count: usize, out: &mut Traces) {
+        for lane in 0..count.min(LANES) {
+            let joints = std::array::from_fn(|index| at.joints[index][lane]);
+            let mut trace = Trace { joints, turns: Turns::of_lane(at, lane), ..Trace::default() };
+            self.trace(&mut trace);
+            set_vector(&mut out.tip, lane, trace.pose.tip);
+            set_vector(&mut out.axis, lane, trace.pose.axis);
+            for index in 0..MAX_AXES {
+                set_vector(&mut out.tip_rates[index], lane, trace.tip_rates[index]);
+                set_vector(&mut out.axes[index], lane, trace.axes[index]);
+            }
+        }
     }
 
     #[inline(always)]

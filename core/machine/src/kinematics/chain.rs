@@ -4,7 +4,11 @@
 //! Directions are those of the tool as seen from the part (ISO 841), so one product with one sign serves
 //! tables and heads alike. Lengths in mm, angles in radians.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
+
+use super::errors::AxisErrors;
 
 /// The longest chain; working values are arrays of this length, so that no point allocates.
 pub const MAX_AXES: usize = 8;
@@ -89,6 +93,8 @@ pub struct Chain {
     axis: Vector3<f64>,
     /// Leading edge with all axes at zero, machine frame, unit vector; none for a tool that turns.
     edge: Option<Vector3<f64>>,
+    /// Errors of axes that depend on where they stand; none of most machines.
+    errors: Option<Arc<[AxisErrors]>>,
 }
 
 /// `vector` turned about the unit vector `k` (Rodrigues' formula).
@@ -188,7 +194,7 @@ impl Chain {
         axis: Vector3<f64>,
     ) -> Self {
         debug_assert!(joints.len() <= MAX_AXES);
-        Self { joints, mount, tip, axis: axis.normalize(), edge: None }
+        Self { joints, mount, tip, axis: axis.normalize(), edge: None, errors: None }
     }
 
     /// The chain with a tool that has a leading edge: a direction across the tool axis, all axes at zero,
@@ -199,6 +205,18 @@ impl Chain {
             across.try_normalize(1e-9)
         });
         self
+    }
+
+    /// The chain with errors of axes that depend on where they stand.
+    pub fn with_errors(mut self, errors: &Arc<[AxisErrors]>) -> Self {
+        self.errors = (!errors.is_empty()).then(|| Arc::clone(errors));
+        self
+    }
+
+    /// Errors of axes that depend on where they stand.
+    #[inline]
+    pub fn errors(&self) -> &[AxisErrors] {
+        self.errors.as_deref().unwrap_or_default()
     }
 
     /// The joints, from the workpiece to the tool.
@@ -323,6 +341,9 @@ impl Chain {
         let mut tip = self.tip;
         let mut axis = self.axis;
         let mut edge = self.edge;
+        if self.errors.is_some() {
+            return self.reach_with_errors(joints, turns, pass);
+        }
         for (index, joint) in self.joints().iter().enumerate().rev() {
             if joint.rotary {
                 let (sine, cosine) = turns.of(index);
@@ -338,6 +359,37 @@ impl Chain {
             }
         }
         Pose { tip: tip - self.mount, axis, edge: edge.unwrap_or_default() }
+    }
+
+    /// [`Chain::reach`] with the errors of the axes behind or before each joint.
+    #[cold]
+    fn reach_with_errors(
+        &self,
+        joints: &Joints,
+        turns: &Turns,
+        mut pass: impl FnMut(usize, &Joint, &Vector3<f64>, &Vector3<f64>),
+    ) -> Pose {
+        let mut pose = Pose { tip: self.tip, axis: self.axis, edge: self.edge.unwrap_or_default() };
+        for (index, joint) in self.joints().iter().enumerate().rev() {
+            let errors = self.errors_of(index);
+            if let Some(errors) = errors.filter(|errors| !errors.before) {
+                errors.carry(joints[index], &mut pose);
+            }
+            if joint.rotary {
+                let (sine, cosine) = turns.of(index);
+                let arm = pose.tip - joint.point;
+                pass(index, joint, &arm, &pose.axis);
+                pose.tip = joint.point + turn(arm, joint.direction, sine, cosine);
+                pose.axis = turn(pose.axis, joint.direction, sine, cosine);
+                pose.edge = turn(pose.edge, joint.direction, sine, cosine);
+            } else {
+                pose.tip += joint.direction * joints[index];
+            }
+            if let Some(errors) = errors.filter(|errors| errors.before) {
+                errors.carry(joints[index], &mut pose);
+            }
+        }
+        Pose { tip: pose.tip - self.mount, ..pose }
     }
 }
 

@@ -550,6 +550,7 @@ impl Solver {
     /// The forward product of `joints` stands behind them.
     pub(super) fn verified(&self, joints: &Joints, pose: &Pose, allowed: f64) -> bool {
         let reached = self.chain.forward(joints);
+        let allowed = allowed + self.chain.largest_error_turn();
         let reach =
             1000.0 + pose.tip.norm() + joints[..MAX_AXES].iter().fold(0.0, |sum, q| sum + q.abs());
         (reached.tip - pose.tip).norm() < VERIFIED * reach / 1000.0

@@ -53,6 +53,12 @@ struct Quill {
     travel: [f64; 2],
 }
 
+/// Steps to a place that errors of axes have part in; two or three are needed.
+const MOST_STEPS: usize = 20;
+
+/// A tip that is missed by less stands on its place, mm.
+const PLACED: f64 = 1e-9;
+
 /// The volume that three directions must span.
 pub(super) const FLAT: f64 = 1e-6;
 
@@ -120,6 +126,43 @@ impl Linear {
     /// Puts the linear axes of `joints` where the tip stands on `tip` (mm, part frame).
     #[inline]
     pub(super) fn place(
+        &self,
+        chain: &Chain,
+        tip: Vector3<f64>,
+        joints: &mut Joints,
+        turns: &Turns,
+    ) -> Result<(), Unreachable> {
+        if !chain.errors().is_empty() {
+            return self.place_erring(chain, tip, joints, turns);
+        }
+        self.place_exact(chain, tip, joints, turns)
+    }
+
+    /// [`Linear::place`] with errors of axes: a fixed point. Each step takes away all of a miss but what errors change over
+    /// its length.
+    #[cold]
+    fn place_erring(
+        &self,
+        chain: &Chain,
+        tip: Vector3<f64>,
+        joints: &mut Joints,
+        turns: &Turns,
+    ) -> Result<(), Unreachable> {
+        let mut target = tip;
+        for _ in 0..MOST_STEPS {
+            self.place_exact(chain, target, joints, turns)?;
+            let miss = tip - chain.pose(joints, turns).tip;
+            if miss.norm() < PLACED {
+                return Ok(());
+            }
+            target += miss;
+        }
+        Err(Unreachable::Linear)
+    }
+
+    /// [`Linear::place`] without errors of axes.
+    #[inline]
+    fn place_exact(
         &self,
         chain: &Chain,
         tip: Vector3<f64>,
@@ -194,7 +237,7 @@ impl Linear {
         count: usize,
         at: &mut AxisBatch,
     ) -> bool {
-        let Some(inverse) = self.inverse.filter(|_| !self.more) else {
+        let Some(inverse) = self.inverse.filter(|_| !self.more && chain.errors().is_empty()) else {
             return false;
         };
         widely(

@@ -339,3 +339,50 @@ fn one_assembly_is_proven_where_determinants_keep_their_sign() {
     };
     assert!(beside[2].abs() < 20.0, "{beside:?}");
 }
+
+/// Three struts around a tube that swings in a universal joint and slides through it, a wrist behind (Tricept).
+#[test]
+fn legs_of_a_tube_are_those_of_its_joints() {
+    let ends: [V; 3] = [0.0, 120.0, 240.0].map(|degrees: f64| {
+        let (sine, cosine) = libm::sincos(degrees.to_radians());
+        V::new(cosine, sine, 0.0)
+    });
+    let leg = |place: usize| {
+        let [from, to] = [ends[place] * 500.0, ends[place] * 150.0];
+        format!(
+            "[[leg]]\nname = \"Q{place}\"\nfrom = [{}, {}, 0]\nat = \"W\"\nto = [{}, {}, -600]\ntravel = [400, 1300]\n",
+            from.x, from.y, to.x, to.y
+        )
+    };
+    let text = format!(
+        "name = \"tube\"\nchain = \"[w b U V W C A (S) t]\"\nworkpiece.mount = [0, 0, -1100]\ntool.gauge = [0, 0, -700]\n[axis.U]\nrotary = [1, 0, 0]\npoint = [0, 0, 0]\ntravel = [-25, 25]\n[axis.V]\nrotary = [0, 1, 0]\npoint = [0, 0, 0]\ntravel = [-25, 25]\n[axis.W]\nlinear = [0, 0, 1]\ntravel = [-400, 150]\n[axis.C]\nrotary = [0, 0, 1]\npoint = [0, 0, 0]\ntravel = [-200, 200]\n[axis.A]\nrotary = [1, 0, 0]\npoint = [0, 0, -650]\ntravel = [-100, 100]\n[control]\ndialect = \"siemens\"\ntcp = \"post\"\n{}{}{}",
+        leg(0),
+        leg(1),
+        leg(2)
+    );
+    let machine = load(source("tube.toml", &text), &[], &mut |_| Err(String::new())).unwrap();
+    let assembly = Assembly::new(machine.legs());
+    let (rounds, mut rng) = randomised(2000, 0x70be);
+    for _ in rounds {
+        let joints = stance(&mut rng, &machine);
+        let turn = Rotation3::from_axis_angle(&V::x_axis(), joints[0])
+            * Rotation3::from_axis_angle(&V::y_axis(), joints[1]);
+        let drives = assembly.drives(&joints).unwrap();
+        for (end, drive) in ends.iter().zip(&drives) {
+            let platform = turn * (end * 150.0 + V::z() * (joints[2] - 600.0));
+            assert!(((platform - end * 500.0).norm() - drive).abs() < 1e-9);
+        }
+        let mut near = joints;
+        (near[0], near[1], near[2]) = (near[0] + 0.03, near[1] - 0.02, near[2] + 20.0);
+        let found = assembly.forward(&drives, &near).unwrap();
+        let miss = found.iter().zip(&joints).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(miss < 1e-7, "{miss}");
+    }
+    let ends: [Joints; 2] = [0, 1].map(|end| {
+        std::array::from_fn(|place| {
+            machine.axes.get(place).and_then(|axis| axis.travel).map_or(0.0, |travel| travel[end])
+        })
+    });
+    let proof = assembly.prove([&ends[0], &ends[1]]);
+    assert!(matches!(proof, AssemblyProof::One { .. }), "{proof:?}");
+}

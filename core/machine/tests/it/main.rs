@@ -10,6 +10,7 @@ mod check;
 mod declared;
 mod dependent_limit;
 mod derivatives;
+mod errors;
 mod freedom;
 mod kept_tip;
 mod kinematics;

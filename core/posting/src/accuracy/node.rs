@@ -539,7 +539,14 @@ impl Placer {
                 reach += value;
             }
         }
-        Self::margin_of(reach, angle)
+        let margin = Self::margin_of(reach, angle);
+        let chain = self.solver.chain();
+        if chain.errors().is_empty() {
+            return margin;
+        }
+        // Between samples errors are off the line between them by twice what they are off that of the block.
+        let [tip, turned] = chain.error_bow([from, to], reach);
+        DeviationBound { tip: margin.tip + 2.0 * tip, axis: margin.axis + 2.0 * turned }
     }
 
     /// [`Placer::margin`] of a chain that reaches so far, mm, its largest angle being `angle` (radians; one at least).

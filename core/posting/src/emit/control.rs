@@ -64,7 +64,7 @@ impl EmitStage<'_> {
                 line,
                 Diagnostic::error(
                     "work-offset",
-                    format!("work offset {number} behind {before}: the words are axis positions (tcp = \"post\"), and a rotary axis carries the part, so that they hold for one mount alone"),
+                    format!("work offset {number} behind {before}: the words are axis positions (tcp = \"post\"), and {}, so that they hold for one mount alone", self.machine.one_mount()),
                 )
                 .help("post the parts one by one, each with its --mount"),
             );

@@ -108,14 +108,21 @@ fn the_machine(job: &SheetJob<'_>, programs: &[(&PathArg, &PostingReport)]) -> S
         "The program holds",
         match machine.holds_on_mount_alone() {
             true if machine.clearance.shortens_ways() => "for the part origin there alone: ways between passes are those that bodies leave",
+            true if machine.errs() => "for the part origin there alone: errors that depend on position are taken out of the words",
             true => "for the part origin there alone: a table turns the part, and the words are axis positions",
             false => "wherever the work offset is measured; travel was checked with the part origin there",
         }
         .to_owned(),
     );
     if machine.holds_on_length_alone() {
-        let words = "of the lengths below alone: a head turns the tool, and the words are axis positions; a tool that is measured otherwise is posted again";
-        row("The program holds for tools", words.to_owned());
+        let why = match machine.errs() {
+            true => "errors that depend on position are taken out of the words",
+            false => "a head turns the tool, and the words are axis positions",
+        };
+        let words = format!(
+            "of the lengths below alone: {why}; a tool that is measured otherwise is posted again"
+        );
+        row("The program holds for tools", words);
     }
     if machine.length_axis == LengthAxis::None {
         row("Length registers", NO_LENGTH.to_owned());

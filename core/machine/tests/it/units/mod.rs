@@ -9,5 +9,7 @@ mod template;
 
 #[path = "../../../src/kinematics/chain.rs"]
 mod chain;
+#[path = "../../../src/kinematics/errors.rs"]
+mod errors;
 #[path = "../../../src/kinematics/travel.rs"]
 mod travel;

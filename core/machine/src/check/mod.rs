@@ -97,6 +97,10 @@ impl Check {
     /// # Errors
     /// What the chain lacks.
     pub fn of(machine: &Machine, length: f64) -> Result<Self, NoClosedForm> {
+        let erring = Probe::new(machine, length)?;
+        // All else is told of the lines alone.
+        let lines = Machine { errors: [].into(), ..machine.clone() };
+        let machine = if machine.errors.is_empty() { machine } else { &lines };
         let probe = Probe::new(machine, length)?;
         let class = MachineClass::of(machine);
         let reach = ReachableCone::of(&probe);
@@ -129,7 +133,7 @@ impl Check {
             words: words::told(&probe),
             limits,
             legs,
-            errors: errors::told(&probe),
+            errors: errors::told(&erring),
             typical,
             poles,
             reach,

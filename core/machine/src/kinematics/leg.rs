@@ -21,9 +21,6 @@ use super::kept_tip::TcpBlock;
 /// Halvings of a way before the bound on a speed is taken as it is.
 const DEEPEST: u32 = 12;
 
-/// Halvings of a box in which the rods do not reach all over.
-const BOXES: u32 = 12;
-
 /// A largest speed that was looked into is known so well.
 const CLOSE: f64 = 1.002;
 
@@ -385,31 +382,6 @@ impl Leg {
             true => joint.direction.cross(&(self.to - joint.point)).norm().max(1.0),
             false => 1.0,
         })
-    }
-
-    /// How much the drive changes at most for one mm of its joint on the platform while each axis stays between its values
-    /// in `ends`, where the rod reaches: mm or radians a mm.
-    pub fn steepest(&self, ends: [&Joints; 2]) -> f64 {
-        self.steepest_in(ends, BOXES)
-    }
-
-    fn steepest_in(&self, [from, to]: [&Joints; 2], halvings: u32) -> f64 {
-        let middle: Joints = std::array::from_fn(|place| 0.5 * (from[place] + to[place]));
-        let half: Joints = std::array::from_fn(|place| 0.5 * libm::fabs(to[place] - from[place]));
-        let still = Joints::default();
-        let gain = self.bounds(&AxisRegion { middle, half, speeds: still, bends: still }).gain;
-        let exact = self.gradient(self.point(&middle)).map_or(0.0, |gradient| gradient.norm());
-        if halvings == 0 || gain <= exact * 1.05 {
-            return if gain.is_finite() { gain } else { exact };
-        }
-        let moves = |place: &usize| half[*place] * self.reach_of(*place);
-        let Some(widest) = self.places().max_by(|a, b| moves(a).total_cmp(&moves(b))) else {
-            return gain;
-        };
-        let mut there = [*to, *from];
-        there.iter_mut().for_each(|end| end[widest] = middle[widest]);
-        let halves = [[from, &there[0]], [&there[1], to]];
-        halves.into_iter().map(|ends| self.steepest_in(ends, halvings - 1)).fold(0.0, f64::max)
     }
 
     /// A bound on the speed of the drive along a way, by the share of it, at most 0.2 % too large; no closer than `enough`.

@@ -162,6 +162,12 @@ impl PrintedArc {
         place
     }
 
+    /// A bound on its second derivative by `t`, mm.
+    pub(crate) fn bend(&self) -> f64 {
+        let radius = self.radii[0].max(self.radii[1]);
+        self.turn * (radius * self.turn + 2.0 * libm::fabs(self.radii[1] - self.radii[0]))
+    }
+
     /// A bound on how far it is from `wanted`, an arc in the frame of the words, both gone along evenly; infinite where
     /// it is not that arc at all.
     ///

@@ -423,21 +423,17 @@ impl BlockStage<'_> {
             ..self.block(leg, &piece.node, piece.bound)
         };
         self.largest.keep(leg, piece.bound);
-        self.push_curve(leg, block, piece.curve, out);
+        self.push_curve(block, piece.curve, out);
         piece.node
     }
 
     /// Hands on a block along a curve.
     pub(super) fn push_curve(
         &self,
-        leg: &PathLeg<'_>,
-        mut block: MotionBlock,
+        block: MotionBlock,
         printed: PrintedCurve,
         out: &mut BlockSink<'_>,
     ) {
-        if self.driven {
-            self.drives_follow_curve(&mut block, leg, &printed);
-        }
         let (line, curve) = (block.line, Box::new(CurveBlock { block, printed }));
         out.push(StreamItem::Curve { line, curve });
     }
@@ -452,6 +448,9 @@ impl BlockStage<'_> {
             if minutes > follow.minutes {
                 follow = FollowTime { minutes, joint: *joint };
             }
+        }
+        if self.driven {
+            self.drives_follow_arc(frame, printed, &mut follow);
         }
         follow
     }

@@ -3,8 +3,7 @@
 use post_machine::kinematics::{AxesWay, Joints, MAX_AXES, least_drive_minutes};
 
 use super::{BlockStage, FollowTime, MotionBlock, PathLeg};
-use crate::accuracy::PathNode;
-use crate::curve::PrintedCurve;
+use crate::accuracy::{PathNode, PrintedArc, WordFrame};
 
 impl BlockStage<'_> {
     /// The least time of a block, of its drives too; `kept`: the control keeps the tip.
@@ -29,33 +28,25 @@ impl BlockStage<'_> {
         }
     }
 
-    /// Likewise of a block along a curve, on which no rotary axis turns and no axis turns back between the places of
-    /// `printed`: a drive goes at most so much faster than the tip as its joint on the platform makes it.
+    /// Likewise of an arc, on which no rotary axis turns: the least time is put into `follow`.
     #[cold]
-    pub(super) fn drives_follow_curve(
+    pub(super) fn drives_follow_arc(
         &self,
-        block: &mut MotionBlock,
-        leg: &PathLeg<'_>,
-        printed: &PrintedCurve,
+        frame: &WordFrame<'_>,
+        printed: &PrintedArc,
+        follow: &mut FollowTime,
     ) {
-        let Some(from) = &self.last else {
-            return;
-        };
-        let mut places: Vec<&Joints> = vec![&from.trace.joints];
-        places.extend(&printed.between);
-        places.push(&block.joints);
-        for (place, driven) in self.machine.legs().enumerate() {
-            let sliding = driven.joints.iter().filter(|joint| !joint.rotary).count();
-            let tip = match sliding {
-                // All of them carry the platform, which goes as the tip does.
-                3 => 1.0,
-                count => count as f64 * leg.placer.solver().linear_reach(),
-            };
-            let gains = places.windows(2).map(|pair| driven.steepest([pair[0], pair[1]]));
-            let speed = block.way * tip * gains.fold(0.0, f64::max);
-            let minutes = speed / driven.max_feed;
-            if minutes > block.follow.minutes {
-                block.follow = FollowTime { minutes, joint: MAX_AXES + place };
+        let ends = [frame.joints(printed.at(0.0)), frame.joints(printed.at(1.0))];
+        let between = |share: f64| Some(frame.joints(printed.at(share)));
+        let mut bends = Joints::default();
+        for (joint, slide) in frame.slides() {
+            bends[*joint] = slide.norm() * printed.bend();
+        }
+        for (place, leg) in self.machine.legs().enumerate() {
+            let speed = leg.fastest([&ends[0], &ends[1]], &between, &bends, 0.0);
+            let minutes = speed / leg.max_feed;
+            if minutes > follow.minutes {
+                *follow = FollowTime { minutes, joint: MAX_AXES + place };
             }
         }
     }

@@ -51,6 +51,11 @@ const TURN: f64 = 1e-6;
 /// Fewer points are not worth being solved together.
 const LEAST_TOGETHER: usize = 4;
 
+/// Legs with largest feeds drive a machine.
+fn driven(machine: &Machine) -> bool {
+    machine.legs().any(|leg| leg.max_feed.is_finite())
+}
+
 /// A straight piece of the CL path on its way to become blocks.
 #[derive(Clone, Copy, Debug)]
 struct PathLeg<'m> {
@@ -188,7 +193,7 @@ impl<'a> BlockStage<'a> {
             keeps: CurvePolicy::new(machine, writes),
             by_vector: tcp && writes.has(Capabilities::TOOL_VECTOR),
             plans: false,
-            driven: machine.legs().any(|leg| leg.max_feed.is_finite()),
+            driven: driven(machine),
             nominal: Vec::new(),
             last: None,
             spare: None,
@@ -374,6 +379,7 @@ impl<'a> BlockStage<'a> {
                 self.depart(line, out);
                 if let Some(head) = self.base.head(name) {
                     self.machine = &head.machine;
+                    self.driven = driven(self.machine);
                     self.kinds = AxisKinds::new(self.machine);
                     self.between.set(self.machine);
                     self.linearise.set(&self.machine.accuracy);

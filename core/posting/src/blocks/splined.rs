@@ -76,7 +76,7 @@ impl BlockStage<'_> {
             ..self.block(&leg, &spline.node, spline.bound)
         };
         self.largest.keep(&leg, spline.bound);
-        self.push_curve(&leg, block, spline.curve, out);
+        self.push_curve(block, spline.curve, out);
         self.spare = self.last.replace(spline.node);
         self.on_part = true;
     }
@@ -89,8 +89,8 @@ impl BlockStage<'_> {
         end: &StraightMove,
     ) -> Option<SplineBlock> {
         let last = self.last.as_deref()?;
-        // No dialect declares splines inside a tilted plane.
-        if self.compensating || self.in_plane() {
+        // No dialect declares splines inside a tilted plane; how fast legs go along one is not known.
+        if self.compensating || self.in_plane() || self.driven {
             return None;
         }
         let node = frame.placer.settled(pose(end), 1.0, &last.trace.joints).ok()?;

@@ -26,6 +26,7 @@ mod cut_stock;
 mod cycle_time;
 mod dialects;
 mod diff;
+mod drives;
 mod files;
 mod frame;
 mod guide;

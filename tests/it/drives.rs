@@ -1,0 +1,139 @@
+//! Feeds of a parallel machine, seen from its program alone: by the formula of a linear delta no carriage goes faster than
+//! its largest feed, and where a block is slower than asked one goes nearly as fast.
+
+use crate::common;
+
+use common::post;
+use post_testkit::randomised;
+
+/// Largest feed of a carriage of `machines/linear-delta.toml`, mm/min.
+const CARRIAGE: f64 = 12_000.0;
+
+/// What the CL file asks for, mm/min.
+const ASKED: f64 = 15_000.0;
+
+/// Tool length, mm.
+const LENGTH: f64 = 40.0;
+
+/// Heights of the carriages with the tip there: R = 130.25 and L = 269.
+fn carriages([x, y, z]: [f64; 3]) -> [f64; 3] {
+    let (far, rod, half) = (130.25, 269.0_f64, 3f64.sqrt() / 2.0);
+    let towers = [(0.0, far), (-half * far, -far / 2.0), (half * far, -far / 2.0)];
+    towers.map(|(a, b)| z + LENGTH + (rod * rod - (a - x) * (a - x) - (b - y) * (b - y)).sqrt())
+}
+
+/// The number behind a letter of a block.
+fn word(block: &str, letter: char) -> Option<f64> {
+    let word = block.split(' ').find(|word| word.starts_with(letter))?;
+    word[1..].trim_end_matches('.').parse().ok()
+}
+
+/// The fastest carriage along a way of `length` mm that is gone along at `feed`, mm/min.
+fn fastest(way: &dyn Fn(f64) -> [f64; 3], length: f64, feed: f64) -> f64 {
+    let mut most: f64 = 0.0;
+    for step in 0..400 {
+        let share = f64::from(step) / 400.0;
+        let [from, to] = [share, share + 1.0 / 400.0].map(|share| carriages(way(share)));
+        for (from, to) in from.iter().zip(to) {
+            most = most.max((to - from).abs() * 400.0 / length * feed);
+        }
+    }
+    most
+}
+
+#[test]
+fn no_carriage_passes_its_largest_feed_and_none_is_held_back_for_nothing() {
+    let (rounds, mut rng) = randomised(12, 0xde17a);
+    let (mut slowed, mut free) = (0, 0);
+    for _ in rounds {
+        let mut text = "TOOL PATH/WEB,TOOL,MILL\nTLDATA/MILL,6.0,3.0,40.0,0.0,0.0\nMSYS/0,0,0,1,0,0,0,1,0\nLOAD/TOOL,1\nSPINDL/RPM,8000,CLW\nRAPID\nGOTO/0,0,60,0,0,1\nFEDRAT/MMPM,600\nGOTO/0,0,20\n".to_owned();
+        text += &format!("FEDRAT/MMPM,{ASKED}\n");
+        for _ in 0..12 {
+            let [x, y] = [0, 1].map(|_| rng.range(-50.0, 50.0));
+            let z = rng.range(2.0, 40.0);
+            text += &format!("GOTO/{x:.3},{y:.3},{z:.3}\n");
+            let radius = rng.range(4.0, 15.0);
+            // Half a circle beside the point.
+            text += &format!(
+                "CIRCLE/{:.3},{y:.3},{z:.3},0,0,1,{radius:.3}\nGOTO/{:.3},{y:.3},{z:.3}\n",
+                x + radius,
+                x + 2.0 * radius
+            );
+        }
+        text += "RAPID\nGOTO/0,0,60\nSPINDL/OFF\nEND-OF-PATH\n";
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("web.cls");
+        std::fs::write(&file, text).unwrap();
+        let length = LENGTH.to_string();
+        let run = post(&[
+            "-q",
+            "-m",
+            "linear-delta",
+            "--tool-length",
+            &length,
+            "--verify",
+            "-o",
+            "-",
+            file.to_str().unwrap(),
+        ]);
+        assert_eq!(run.code, 0, "{}", run.err);
+        let (mut at, mut mode, mut feed) = ([0.0; 3], 0.0, 0.0);
+        for block in run.out.lines() {
+            let moves = ["X", "Y", "Z"].iter().any(|letter| block.contains(letter));
+            if block.starts_with('(') || block.contains("G53") {
+                continue;
+            }
+            if let Some(code) = block.split(' ').rev().find_map(|word| match word {
+                "G0" => Some(0.0),
+                "G1" => Some(1.0),
+                "G2" => Some(2.0),
+                "G3" => Some(3.0),
+                _ => None,
+            }) {
+                mode = code;
+            }
+            feed = word(block, 'F').unwrap_or(feed);
+            let from = at;
+            for (place, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
+                at[place] = word(block, letter).unwrap_or(at[place]);
+            }
+            if !moves || mode == 0.0 || feed < 1000.0 {
+                continue;
+            }
+            let to = at;
+            let straight = |share: f64| {
+                std::array::from_fn(|axis| from[axis] + share * (to[axis] - from[axis]))
+            };
+            let ways = [0, 1, 2].map(|axis| to[axis] - from[axis]);
+            let chord = ways.iter().map(|way| way * way).sum::<f64>().sqrt();
+            let centre = [word(block, 'I'), word(block, 'J')].map(|by| by.unwrap_or(0.0));
+            let (x, y) = (from[0] + centre[0], from[1] + centre[1]);
+            let radius = libm::hypot(centre[0], centre[1]);
+            let first = libm::atan2(from[1] - y, from[0] - x);
+            let last = libm::atan2(to[1] - y, to[0] - x);
+            let tau = std::f64::consts::TAU;
+            let turn = match mode == 2.0 {
+                true => -(first - last).rem_euclid(tau),
+                false => (last - first).rem_euclid(tau),
+            };
+            let round = |share: f64| {
+                let (sine, cosine) = libm::sincos(first + share * turn);
+                [x + radius * cosine, y + radius * sine, from[2]]
+            };
+            let (way, length): (&dyn Fn(f64) -> [f64; 3], f64) = match mode == 1.0 {
+                true => (&straight, chord),
+                false => (&round, radius * turn.abs()),
+            };
+            let speed = fastest(way, length, feed);
+            assert!(speed <= CARRIAGE * 1.0005, "{block}: {speed}");
+            match feed < ASKED - 0.5 {
+                true => {
+                    slowed += 1;
+                    assert!(speed > CARRIAGE * 0.98, "{block}: held back at {speed}");
+                }
+                false => free += 1,
+            }
+        }
+    }
+    assert!(slowed > 20 && free > 20, "{slowed} {free}");
+}

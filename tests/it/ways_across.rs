@@ -2,7 +2,6 @@
 
 use std::fs;
 
-use post_testkit::{assert_contains, randomised};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -40,7 +39,6 @@ fn folder(machine: &str, more: &str) -> TempDir {
 }
 
 const LOW: [&str; 2] = ["--set", "clearance.low_retracts=true"];
-const LINK: [&str; 2] = ["--set", "clearance.link=true"];
 
 /// The program that is posted so, and its summary; it is proven and held against its CL file once more.
 fn made(folder: &TempDir, more: &[&str]) -> (String, Value) {
@@ -72,7 +70,7 @@ fn retracts(program: &str) -> Vec<f64> {
 
 #[test]
 fn the_tool_is_retracted_as_high_as_bodies_ask_for() {
-    for machine in ["dmu50", "ac-trunnion", "ac-trunnion-840d", "head-table-bc"] {
+    for machine in ["dmu50", "ac-trunnion", "ac-trunnion-840d"] {
         let folder = folder(machine, "");
         let (ever, _) = made(&folder, &[]);
         let (low, summary) = made(&folder, &LOW);

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use post_testkit::{assert_contains, randomised};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -39,17 +40,16 @@ fn folder(machine: &str, more: &str) -> TempDir {
 }
 
 const LOW: [&str; 2] = ["--set", "clearance.low_retracts=true"];
+const LINK: [&str; 2] = ["--set", "clearance.link=true"];
 
-/// The program that is posted so, and its summary; it is proven and held against its CL file once more.
-fn made(folder: &TempDir, more: &[&str]) -> (String, Value) {
-    let facets = root().join(sample("facets.apt"));
-    let facets = facets.to_str().unwrap();
-    let words = ["-m", "m.toml", facets, "-o", "f.nc", "-q", "--summary", "s.json"];
+/// The program that is made of `cl`, and its summary; it is proven and held against its CL file once more.
+fn made(folder: &TempDir, cl: &str, more: &[&str]) -> (String, Value) {
+    let words = ["-m", "m.toml", cl, "-o", "f.nc", "-q", "--summary", "s.json"];
     let run = post_in(folder.path(), &[&words, more].concat());
     assert_eq!(run.code, 0, "{}", run.err);
-    let proof = post_in(folder.path(), &["clearance", "f.nc", "-m", "m.toml", "--cl", facets]);
+    let proof = post_in(folder.path(), &["clearance", "f.nc", "-m", "m.toml", "--cl", cl]);
     assert_eq!(proof.code, 0, "{}{}", proof.out, proof.err);
-    let words = ["verify", "f.nc", "-m", "m.toml", "--against", facets, "--posted"];
+    let words = ["verify", "f.nc", "-m", "m.toml", "--against", cl, "--posted"];
     let held = post_in(folder.path(), &[&words, more].concat());
     assert_eq!(held.code, 0, "{}", held.err);
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
@@ -70,16 +70,130 @@ fn retracts(program: &str) -> Vec<f64> {
 
 #[test]
 fn the_tool_is_retracted_as_high_as_bodies_ask_for() {
-    for machine in ["dmu50", "ac-trunnion", "ac-trunnion-840d"] {
-        let folder = folder(machine, "");
-        let (ever, _) = made(&folder, &[]);
-        let (low, summary) = made(&folder, &LOW);
+    let facets = root().join(sample("facets.apt"));
+    let facets = facets.to_str().unwrap();
+    for machine in ["dmu50", "ac-trunnion", "ac-trunnion-840d", "head-table-bc", "head-head"] {
+        let folder = folder(machine, "rapid_axes = \"together\"\n");
+        let (ever, summary) = made(&folder, facets, &[]);
+        assert_eq!(summary.get("ways_across"), None);
+        let (low, summary) = made(&folder, facets, &LOW);
         let [ever, low] = [retracts(&ever), retracts(&low)];
         assert_eq!(ever.len(), low.len(), "{machine}");
+        assert!(ever.iter().zip(&low).all(|(ever, low)| low <= ever), "{machine}");
         let lower = ever.iter().zip(&low).filter(|(ever, low)| low < ever).count();
         let ways = &summary["ways_across"];
-        assert_eq!(ways["low"], lower as u64, "{machine}: {summary}");
-        assert!(lower >= 3 && ways["saved_s"].as_f64().unwrap() > 0.5, "{machine}: {summary}");
-        assert!(ever.iter().zip(&low).all(|(ever, low)| low <= ever), "{machine}");
+        assert_eq!((&ways["low"], lower), (&3.into(), 3), "{machine}: {low:?}");
+        let saved = ways["saved_s"].as_f64().unwrap();
+        assert!(saved > 0.5, "{machine}: {ways}");
+        // Past bodies it is quicker still, where axes may stand anywhere.
+        let (_, summary) = made(&folder, facets, &LINK);
+        let past = &summary["ways_across"];
+        let anywhere = machine != "head-table-bc";
+        assert_eq!(past["past"] == 3, anywhere, "{machine}: {past}");
+        assert!(past["saved_s"].as_f64().unwrap() >= saved, "{machine}: {past}");
     }
+}
+
+/// Two facets that lean to either side, apart in X.
+fn two_sides() -> String {
+    let (sine, cosine) = libm::sincos(30f64.to_radians());
+    let mut moves = "TLDATA/MILL,10,0,100,0,0\nLOAD/TOOL,3\nSPINDL/RPM,6000,CLW\n".to_owned();
+    for (sign, from, to) in [(1.0, -150.0, -90.0), (-1.0, 90.0, 150.0)] {
+        let at = |x: f64, out: f64| {
+            let (y, z) = (sign * (20.0 + out * sine), 52.0 + out * cosine);
+            format!("GOTO/{x:.4},{y:.4},{z:.4},0,{:.7},{cosine:.7}\n", sign * sine)
+        };
+        let [over, begin, end, away] = [at(from, 60.0), at(from, 0.0), at(to, 0.0), at(to, 60.0)];
+        moves += &format!("RAPID\n{over}RAPID\n{begin}FEDRAT/MMPM,800\n{end}RAPID\n{away}");
+    }
+    moves + "FINI\n"
+}
+
+/// A plate that turns with the table, and a wall between two facets on it.
+fn walled(wall: [[f64; 3]; 2]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = format!(
+        "extends = \"ac-trunnion\"
+name = \"with a wall\"
+[fixture.plate]
+block = [[-170, -60, 0], [170, 60, 20]]
+[fixture.wall]
+block = {wall:?}
+on = \"b\"
+[fixture.head]
+cylinder = [[0, 0, 402], [0, 0, 520]]
+radius = 60
+on = \"t\"
+[tools.3]
+length = 100
+holder = [[0, 32], [20, 32], [20, 20], [60, 18]]
+cutter = [[0, 5], [40, 5]]
+[clearance]
+keep = 1
+rapid_axes = \"together\"
+"
+    );
+    fs::write(folder.path().join("m.toml"), machine).unwrap();
+    fs::write(folder.path().join("sides.cls"), two_sides()).unwrap();
+    folder
+}
+
+#[test]
+fn a_wall_that_is_higher_than_the_retract_is_gone_round() {
+    let folder = walled([[-10.0, -60.0, 65.0], [10.0, 60.0, 330.0]]);
+    let words = ["-m", "m.toml", "sides.cls", "-o", "f.nc", "-q"];
+    for more in [&["--clearance"][..], &LOW] {
+        let run = post_in(folder.path(), &[&words, more].concat());
+        assert_eq!(run.code, 1, "{}", run.err);
+        assert_contains(&run.err, &["wall hits cutter T3"]);
+    }
+    let run = post_in(folder.path(), &[&words[..], &LOW].concat());
+    let said = ["no way to here is found on which wall stays clear of cutter T3", "sides.cls:13"];
+    assert_contains(&run.err, &[&said[..], &["[clearance] link = true"]].concat());
+    assert!(!folder.path().join("f.nc").exists());
+    let (program, summary) = made(&folder, "sides.cls", &LINK);
+    assert_eq!(summary["ways_across"]["past"], 1, "{program}");
+    assert_contains(&program, &["for the part at X0 Y0 Z0 alone".to_uppercase().as_str()]);
+    let (again, _) = made(&folder, "sides.cls", &LINK);
+    assert_eq!(program, again);
+}
+
+/// As far as nothing but height helps, the tool goes as much higher as the wall is, and keeps what is to be kept.
+#[test]
+fn the_retract_is_as_high_as_the_wall() {
+    let height = |wall: f64, rapid: &str| {
+        let folder = walled([[-10.0, -290.0, 65.0], [10.0, 290.0, wall]]);
+        let more = ["--set", &format!("clearance.rapid={rapid}")];
+        retracts(&made(&folder, "sides.cls", &[&LOW[..], &more].concat()).0)[1]
+    };
+    let [low, high, kept] = [height(180.0, "1"), height(230.0, "1"), height(180.0, "9")];
+    assert!(
+        libm::fabs(high - low - 50.0) <= 2.0 && libm::fabs(kept - low - 8.0) <= 2.0,
+        "{low} {high} {kept}"
+    );
+    // The tip stands 300 mm over the zero of Z.
+    assert!((181.0..184.0).contains(&(300.0 + low)), "{low}");
+}
+
+/// Wherever a wall stands: what is written is proven, and what is not is refused for it.
+#[test]
+fn walls_anywhere_are_kept_clear_of_or_refused() {
+    let (rounds, mut rng) = randomised(24, 83);
+    let mut past = 0;
+    for _ in rounds {
+        let x = rng.range(-30.0, 30.0);
+        let (wide, from, to) =
+            (rng.range(4.0, 20.0), rng.range(-150.0, 0.0), rng.range(10.0, 150.0));
+        let wall = [[x, from, 65.0], [x + wide, to, rng.range(120.0, 340.0)]];
+        let folder = walled(wall);
+        let words = ["-m", "m.toml", "sides.cls", "-o", "f.nc", "-q"];
+        let run = post_in(folder.path(), &[&words[..], &LINK].concat());
+        if run.code != 0 {
+            assert_contains(&run.err, &["error[clearance]", "wall"]);
+            continue;
+        }
+        let (_, summary) = made(&folder, "sides.cls", &LINK);
+        past += summary["ways_across"]["past"].as_u64().unwrap();
+    }
+    assert!(past > 0);
 }

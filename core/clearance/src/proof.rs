@@ -185,6 +185,14 @@ impl Proof {
         self
     }
 
+    /// The same, distances told apart no closer than by `within`, mm: what comes as near to what is to be kept counts as not
+    /// proven.
+    pub fn known_within(mut self, within: f64) -> Self {
+        let own = self.pairs.iter_mut().filter_map(|pair| pair.rules.as_mut());
+        own.chain([&mut self.rules]).for_each(|rules| rules.within = within);
+        self
+    }
+
     /// What the first pair of bodies of these kinds keeps; none where there is none.
     pub fn rules(&self, kinds: [BodyKind; 2]) -> Option<Rules> {
         let [one, other] = kinds;

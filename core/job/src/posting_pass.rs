@@ -111,7 +111,7 @@ impl PostingPass<'_> {
             false => None,
         };
         let mut between = match machine.clearance.shortens_ways() {
-            true => Some(ChoiceBodies::of(machine, &mut Vec::new())?),
+            true => Some(ChoiceBodies::of(machine, &mut Vec::new())?.coarse()),
             false => None,
         };
         // Blocks are shown with the lines that they end on: whoever looks on waits for the text of each batch.

@@ -18,6 +18,9 @@ use crate::failure::Failure;
 /// Ways that are followed side by side: what is known of distances goes on along each.
 const MOST_TRACKS: usize = 6;
 
+/// Ways that may as well be others keep so much more than they have to, mm.
+const COARSE: f64 = 0.5;
+
 /// Ways that are remembered: full turns of a rotary axis are nothing to bodies.
 const MOST_ASKED: usize = 64;
 
@@ -47,6 +50,8 @@ pub(crate) struct ChoiceBodies<'a> {
     tracks: Vec<Track>,
     asked: VecDeque<Asked>,
     count: u64,
+    /// How closely distances are told apart, mm; none: as in the proof of the program.
+    within: Option<f64>,
 }
 
 impl<'a> ChoiceBodies<'a> {
@@ -62,7 +67,12 @@ impl<'a> ChoiceBodies<'a> {
         }
         told.append(&mut findings);
         let (tool, tracks, asked) = (Vec::new(), Vec::new(), VecDeque::new());
-        Ok(Self { machine, fixed, tool, tracks, asked, count: 0 })
+        Ok(Self { machine, fixed, tool, tracks, asked, count: 0, within: None })
+    }
+
+    /// The same for ways that may as well be others: where bodies come by closely nothing is looked at for long.
+    pub fn coarse(self) -> Self {
+        Self { within: Some(COARSE), ..self }
     }
 
     /// The track that stands on `joints`; else another begins, in the place of the one that was asked longest ago.
@@ -73,6 +83,10 @@ impl<'a> ChoiceBodies<'a> {
             if self.tracks.len() < MOST_TRACKS {
                 let all = [self.fixed.as_slice(), &self.tool].concat();
                 let proof = proof(self.machine, all);
+                let proof = match self.within {
+                    Some(within) => proof.known_within(within),
+                    None => proof,
+                };
                 self.tracks.push(Track { proof, stands: *joints, used: 0 });
                 return self.tracks.len() - 1;
             }

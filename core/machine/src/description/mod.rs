@@ -579,10 +579,15 @@ impl Machine {
 
     /// The words of a program hold for tools of one length alone: they are axis positions, and a head turns the tool, or
     /// errors of axes are taken out of them.
-    pub fn holds_on_length_alone(&self) -> bool {
+    pub fn words_hold_on_length_alone(&self) -> bool {
         let first_linear = self.axes.iter().position(|axis| !axis.joint.rotary);
         let mut behind = self.axes.iter().skip(first_linear.unwrap_or(0));
         self.control.tcp == Tcp::Post && (self.errs() || behind.any(|axis| axis.joint.rotary))
+    }
+
+    /// A program holds for tools of one length alone: its words do, or ways between passes are those that bodies leave.
+    pub fn holds_on_length_alone(&self) -> bool {
+        self.words_hold_on_length_alone() || self.clearance.shortens_ways()
     }
 
     /// The head that `HEAD/name` swaps in.

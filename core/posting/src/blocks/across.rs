@@ -7,12 +7,15 @@
 
 use post_machine::axis_words::{self, unit_length};
 use post_machine::description::{Axis, Machine};
+use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Solver};
 
 use super::free_way::{FreeWay, Room};
 use super::{BlockNote, BlockSink, BlockStage, MotionBlock};
 use crate::accuracy::{PathNode, Placer};
-use crate::configuration::{BodyClearance, ClearTool, DriveLimits, TrialWay, TrialWayKind};
+use crate::configuration::{
+    BodyClearance, ClearTool, Contact, DriveLimits, TrialWay, TrialWayKind,
+};
 use crate::program::{Command, ToolChange};
 use crate::report::WaysAcross;
 use crate::stream::StreamItem;
@@ -27,7 +30,7 @@ const TRIALS: u32 = 9;
 const WORTH: f64 = 1.0;
 
 /// How far the tool is drawn back to where a way past bodies begins and ends, mm: the first that is clear.
-const DRAWN_BACK: [f64; 6] = [2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
+const DRAWN_BACK: [f64; 7] = [0.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 
 /// Rotary axes of a way past bodies stand on whole numbers of these, degrees.
 const TURN_STEP: f64 = 0.1;
@@ -74,20 +77,54 @@ struct Trials<'t> {
     drives: &'t DriveLimits,
 }
 
+/// From where the tool departs to the next first position.
+struct Crossing<'c> {
+    /// Line of the first position in the CL file.
+    line: u64,
+    placer: &'c Placer,
+    from: &'c Joints,
+    node: &'c PathNode,
+    /// The axis that retracts the tool.
+    depth: usize,
+    /// Where it does, mm.
+    highest: f64,
+}
+
+impl Crossing<'_> {
+    /// The sense of the depth axis towards the retract.
+    fn up(&self) -> f64 {
+        libm::copysign(1.0, self.highest - self.from[self.depth])
+    }
+
+    /// A value of the depth axis drawn back, mm; none beyond the retract.
+    fn drawn_back(&self, from: f64, by: f64) -> Option<f64> {
+        let back = from + self.up() * by;
+        (self.up() * (self.highest - back) >= 0.0).then_some(back)
+    }
+}
+
 impl Trials<'_> {
-    fn is_clear(&mut self, from: &Joints, to: &Joints, kind: TrialWayKind) -> bool {
-        let way = TrialWay { solver: self.solver, ends: [from, to], kind };
-        self.bodies.contact(&way).is_none()
+    fn contact_of(&mut self, from: &Joints, to: &Joints, kind: TrialWayKind) -> Option<Contact> {
+        self.bodies.contact(&TrialWay { solver: self.solver, ends: [from, to], kind })
     }
 
-    /// Off the part, as it stands: where the cut has been nothing is left to hit with the cutter.
-    fn departs(&mut self, from: &Joints, to: &Joints) -> bool {
-        from == to || self.is_clear(from, to, TrialWayKind::Rapid)
+    /// What a way that begins where the tool departs does not stay clear of. Off the part, as it stands, nothing is left to
+    /// hit with the cutter where the cut has been.
+    fn contact(&mut self, places: &[Joints]) -> Option<Contact> {
+        let kinds = [TrialWayKind::Rapid].into_iter().chain(std::iter::repeat(TrialWayKind::Turn));
+        let mut ways = places.windows(2).zip(kinds).filter(|(ends, _)| ends[0] != ends[1]);
+        ways.find_map(|(ends, kind)| self.contact_of(&ends[0], &ends[1], kind))
     }
 
+    /// Nothing is hit on a way between two passes.
     fn goes(&mut self, places: &[Joints]) -> bool {
         let mut ways = places.windows(2).filter(|ends| ends[0] != ends[1]);
-        ways.all(|ends| self.is_clear(&ends[0], &ends[1], TrialWayKind::Turn))
+        ways.all(|ends| self.contact_of(&ends[0], &ends[1], TrialWayKind::Turn).is_none())
+    }
+
+    /// Nothing is hit at a place between two passes.
+    fn stands(&mut self, at: &Joints) -> bool {
+        self.contact_of(at, at, TrialWayKind::Turn).is_none()
     }
 
     /// The time of a way from rest to rest at each place, s.
@@ -207,15 +244,16 @@ impl<'a> BlockStage<'a> {
     }
 
     /// Chooses the way to a first position, and how high the tool comes over it.
-    pub(super) fn choose_across(&mut self, placer: &Placer, node: &PathNode) {
+    pub(super) fn choose_across(&mut self, line: u64, placer: &Placer, node: &PathNode) {
         let Some(mut across) = self.across.take() else {
             return;
         };
-        if let Some(from) = across.departed.take()
+        if let Some(from) = &across.departed.take()
             && let Some((depth, highest)) = self.shortened()
         {
+            let crossing = Crossing { line, placer, from, node, depth, highest };
             let best = match across.equip(self.machine, placer.solver()) {
-                true => self.way_across(&mut across, placer, (depth, highest), (&from, node)),
+                true => self.way_across(&mut across, &crossing),
                 false => None,
             };
             match best {
@@ -244,67 +282,65 @@ impl<'a> BlockStage<'a> {
         (plain && axis_words::depth(machine) == Some(retract.0)).then_some(retract)
     }
 
-    /// The quickest way that is proven clear, if there is one that is quicker than over the retract.
+    /// The quickest way that is proven clear: none where that is the one over the retract, or none is found.
     fn way_across(
         &mut self,
         across: &mut AcrossChoice<'_>,
-        placer: &Placer,
-        (depth, highest): (usize, f64),
-        (from, node): (&Joints, &PathNode),
+        crossing: &Crossing<'_>,
     ) -> Option<Candidate> {
         let AcrossChoice { bodies, drives, links, found, .. } = across;
-        let mut trials = Trials { bodies: &mut **bodies, solver: placer.solver(), drives };
-        let ever = self.over(placer, (depth, highest), (from, node));
+        let solver = crossing.placer.solver();
+        let mut trials = Trials { bodies: &mut **bodies, solver, drives };
+        let ever = self.over(crossing, crossing.highest);
         let seconds = trials.seconds(&ever);
-        let low = self.low_way(&mut trials, placer, (depth, highest), (from, node));
-        let past = match *links {
-            true => self.way_past(&mut trials, placer, (depth, highest), (from, node)),
+        let low = self.low_way(&mut trials, crossing);
+        let low = low.filter(|low| low.seconds < seconds || trials.contact(&ever).is_some());
+        let blocked = if low.is_some() { None } else { trials.contact(&ever) };
+        let than = match (&low, &blocked) {
+            (Some(low), _) => low.seconds,
+            (None, Some(_)) => f64::INFINITY,
+            (None, None) => seconds,
+        };
+        let past = match *links && self.stands_anywhere() {
+            true => self.way_past(&mut trials, crossing),
             false => None,
         };
-        let quicker = |than: f64, way: Option<Candidate>| way.filter(|way| way.seconds < than);
-        let low = quicker(seconds, low);
-        let than = low.as_ref().map_or(seconds, |low| low.seconds);
-        let best = match quicker(than, past) {
-            Some(past) => {
-                found.past += 1;
-                past
-            }
-            None => {
-                found.low += u64::from(low.is_some());
-                low?
-            }
-        };
+        let past = past.filter(|past| past.seconds < than);
+        if let (None, Some(contact)) = (&past, &blocked) {
+            self.findings.at(crossing.line, leads_nowhere(self.machine, contact));
+        }
+        match past {
+            Some(_) => found.past += 1,
+            None => found.low += u64::from(low.is_some()),
+        }
+        let best = past.or(low)?;
         found.saved_s += seconds - best.seconds;
         Some(best)
     }
 
-    /// The places that the axes come by over the height `retract`: up, turned there, across, and down to the first position.
-    fn over(
-        &mut self,
-        placer: &Placer,
-        retract: (usize, f64),
-        (from, node): (&Joints, &PathNode),
-    ) -> Vec<Joints> {
-        let (depth, height) = retract;
-        let approach = self.approach(placer, node, retract);
-        let mut up = *from;
-        up[depth] = height;
+    /// No axis has index positions between which it stands nowhere, or is shown over a turn, of which the control takes either
+    /// way.
+    fn stands_anywhere(&self) -> bool {
+        self.machine.axes.iter().all(|axis| axis.indexed.is_none() && axis.range.is_none())
+    }
+
+    /// The places that the axes come by over a height: up, turned there, across, and down to the first position.
+    fn over(&mut self, crossing: &Crossing<'_>, height: f64) -> Vec<Joints> {
+        let approach = self.approach(crossing, height);
+        let mut up = *crossing.from;
+        up[crossing.depth] = height;
         let mut turned = up;
         for (place, axis) in self.machine.axes.iter().enumerate() {
             if axis.joint.rotary {
                 turned[place] = approach[0][place];
             }
         }
-        [*from, up, turned].into_iter().chain(approach).collect()
+        [*crossing.from, up, turned].into_iter().chain(approach).collect()
     }
 
-    /// The places that the tool comes by to a first position from where it is retracted to `height`, that one the last.
-    fn approach(
-        &mut self,
-        placer: &Placer,
-        node: &PathNode,
-        (depth, height): (usize, f64),
-    ) -> Vec<Joints> {
+    /// The places that the tool comes by to the first position from where it is retracted to `height`, that one the last.
+    fn approach(&mut self, crossing: &Crossing<'_>, height: f64) -> Vec<Joints> {
+        let Crossing { placer, node, depth, .. } = *crossing;
         self.lowered = Some(height);
         let mut places: Vec<Joints> = match self.comes_from_above(placer, node) {
             true => self.stops_above(placer, node).iter().map(|stop| stop.trace.joints).collect(),
@@ -320,15 +356,10 @@ impl<'a> BlockStage<'a> {
     }
 
     /// The lowest height that is found clear: the higher one of both ends, or by halving what is left up to the retract.
-    fn low_way(
-        &mut self,
-        trials: &mut Trials<'_>,
-        placer: &Placer,
-        (depth, highest): (usize, f64),
-        ends: (&Joints, &PathNode),
-    ) -> Option<Candidate> {
-        let up = libm::copysign(1.0, highest - ends.0[depth]);
-        let [one, other] = [ends.0[depth], ends.1.trace.joints[depth]];
+    fn low_way(&mut self, trials: &mut Trials<'_>, crossing: &Crossing<'_>) -> Option<Candidate> {
+        let Crossing { depth, highest, .. } = *crossing;
+        let up = crossing.up();
+        let [one, other] = [crossing.from[depth], crossing.node.trace.joints[depth]];
         let lowest = if up > 0.0 { one.max(other) } else { one.min(other) };
         let step = self.step();
         let axis = &self.machine.axes[depth];
@@ -342,8 +373,8 @@ impl<'a> BlockStage<'a> {
                 break;
             }
             let at = highest + (height * step * up - axis.reading(highest));
-            let places = self.over(placer, (depth, at), ends);
-            if trials.departs(&places[0], &places[1]) && trials.goes(&places[1..]) {
+            let places = self.over(crossing, at);
+            if trials.contact(&places).is_none() {
                 let way = WayAcross { retract: (depth, at), through: Vec::new() };
                 best = Some(Candidate { way, entry: at, seconds: trials.seconds(&places) });
                 high = height - 1.0;
@@ -356,32 +387,20 @@ impl<'a> BlockStage<'a> {
     }
 
     /// A way past bodies, from a little over where the tool departs to a little over the first position.
-    fn way_past(
-        &mut self,
-        trials: &mut Trials<'_>,
-        placer: &Placer,
-        (depth, highest): (usize, f64),
-        (from, node): (&Joints, &PathNode),
-    ) -> Option<Candidate> {
-        let up = libm::copysign(1.0, highest - from[depth]);
-        let drawn = |at: f64, by: f64| {
-            let back = at + up * by;
-            (up * (highest - back) >= 0.0).then_some(back)
-        };
+    fn way_past(&mut self, trials: &mut Trials<'_>, crossing: &Crossing<'_>) -> Option<Candidate> {
+        let Crossing { from, node, depth, highest, .. } = *crossing;
         let left = DRAWN_BACK.iter().find_map(|by| {
-            let height = drawn(from[depth], *by)?;
             let mut left = *from;
-            left[depth] = height;
-            let stands = [left; 2];
-            let free = trials.is_clear(&stands[0], &stands[1], TrialWayKind::Turn);
-            (free && trials.departs(from, &left)).then_some(left)
+            left[depth] = crossing.drawn_back(from[depth], *by)?;
+            (trials.stands(&left) && trials.contact(&[*from, left]).is_none()).then_some(left)
         })?;
         let (entry, approach) = DRAWN_BACK.iter().find_map(|by| {
-            let height = drawn(node.trace.joints[depth], *by)?;
-            let approach = self.approach(placer, node, (depth, height));
-            (approach.len() > 1 && trials.goes(&approach)).then_some((height, approach))
+            let height = crossing.drawn_back(node.trace.joints[depth], *by)?;
+            let approach = self.approach(crossing, height);
+            (trials.stands(&approach[0]) && trials.goes(&approach)).then_some((height, approach))
         })?;
-        let room = Room::new(self.machine, [&left, &approach[0]]);
+        let ends = [&left, &approach[0]];
+        let room = Room::new(self.machine, ends, (depth, highest));
         let step = self.step();
         let axes = &self.machine.axes;
         let printed = |joints: &Joints| {
@@ -389,22 +408,17 @@ impl<'a> BlockStage<'a> {
             for (value, axis) in printed.iter_mut().zip(axes) {
                 *value = shown(axis, *value, if axis.joint.rotary { TURN_STEP } else { step });
             }
-            printed
+            room.held(printed)
         };
+        let drives = trials.drives;
         let way = FreeWay {
             room: &room,
             printed: &printed,
-            seconds: &|ends| trials.drives.rest_to_rest(ends[0], ends[1], 1.0, |_| true),
+            seconds: &|ends| drives.rest_to_rest(ends[0], ends[1], 1.0, |_| true),
         };
-        let (bodies, solver) = (&mut *trials.bodies, trials.solver);
-        let mut clear = |from: &Joints, to: &Joints| {
-            let way = TrialWay { solver, ends: [from, to], kind: TrialWayKind::Turn };
-            bodies.contact(&way).is_none()
-        };
-        let found = way.find([&left, &approach[0]], &mut clear)?;
-        let all: Vec<Joints> =
-            [*from].iter().chain(&found).chain(&approach[1..]).copied().collect();
-        let seconds = trials.seconds(&all);
+        let found = way.find(ends, &mut |from, to| trials.goes(&[*from, *to]))?;
+        let all = [from].into_iter().chain(&found).chain(&approach[1..]);
+        let seconds = trials.seconds(&all.copied().collect::<Vec<_>>());
         let way = WayAcross { retract: (depth, left[depth]), through: found[1..].to_vec() };
         Some(Candidate { way, entry, seconds })
     }
@@ -414,6 +428,22 @@ impl<'a> BlockStage<'a> {
         let unit = unit_length(self.machine.control.units);
         if unit > 1.0 { unit / 20.0 } else { unit }
     }
+}
+
+/// No way across is found clear, that of the machine file among them.
+fn leads_nowhere(machine: &Machine, contact: &Contact) -> Diagnostic {
+    let [one, other] = &contact.bodies;
+    let message = format!(
+        "no way to here is found on which {one} stays clear of {other}; over the retract they do not (on the way to {})",
+        machine.shown(&contact.joints)
+    );
+    let help = match machine.clearance.link {
+        true => "another fixture, mount or order of the operations, or a way of the CL file's own",
+        false => {
+            "[clearance] link = true looks for a way past them; else another fixture, mount or order of the operations"
+        }
+    };
+    Diagnostic::warning("clearance", message).help(help)
 }
 
 /// The value of an axis nearest to `value` that it shows as a whole number of steps, mm or degrees.

@@ -48,7 +48,7 @@ impl BlockStage<'_> {
         kind: BlockKind,
         out: &mut BlockSink<'_>,
     ) {
-        self.choose_across(leg.placer, node);
+        self.choose_across(leg.line, leg.placer, node);
         self.come_down(leg, node, kind, out);
         self.lowered = None;
     }

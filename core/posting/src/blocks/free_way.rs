@@ -11,13 +11,13 @@ use post_machine::kinematics::{Joints, MAX_AXES};
 const MOST_PIECES: usize = 240;
 
 /// Pieces that are asked for to shorten a way.
-const MOST_SHORTER: usize = 60;
+const MOST_SHORTER: usize = 100;
 
 /// A tree grows by no more than this share of the room at once.
 const GROWTH: f64 = 0.3;
 
-/// How far beyond both ends places are looked for: mm of linear axes, radians of rotary ones.
-const BEYOND: [f64; 2] = [300.0, 1.6];
+/// How far beyond both ends places of linear axes are looked for, mm; rotary ones stay between them.
+const BEYOND: f64 = 300.0;
 
 /// Where places are looked for.
 #[derive(Clone, Debug)]
@@ -27,17 +27,29 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Around two places, inside travel.
-    pub(super) fn new(machine: &Machine, ends: [&Joints; 2]) -> Self {
+    /// Around two places, inside travel, and no deeper than they are, whatever bodies say: from there up to the retract, which
+    /// is told with the place of the depth axis.
+    pub(super) fn new(machine: &Machine, ends: [&Joints; 2], retract: (usize, f64)) -> Self {
         let mut room = Self { least: *ends[0], most: *ends[0] };
         for (place, axis) in machine.axes.iter().enumerate() {
             let [one, other] = ends.map(|joints| joints[place]);
-            let beyond = BEYOND[usize::from(axis.joint.rotary)];
+            let beyond = if axis.joint.rotary { 0.0 } else { BEYOND };
             let [least, most] = axis.travel.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             room.least[place] = (one.min(other) - beyond).max(least).min(one.min(other));
             room.most[place] = (one.max(other) + beyond).min(most).max(one.max(other));
         }
+        let (depth, highest) = retract;
+        let stands = ends.map(|joints| joints[depth]);
+        let [least, most] = [stands[0].min(stands[1]), stands[0].max(stands[1])];
+        let up = highest > most;
+        room.least[depth] = if up { least } else { highest.min(least) };
+        room.most[depth] = if up { highest } else { most };
         room
+    }
+
+    /// The place in it that is nearest to `joints`.
+    pub(super) fn held(&self, joints: Joints) -> Joints {
+        std::array::from_fn(|place| joints[place].max(self.least[place]).min(self.most[place]))
     }
 
     /// How far two places are from one another, as shares of the room: the axis that is farthest.

@@ -90,7 +90,7 @@ impl ConfigurationStage<'_> {
         let told_at_the_end = self.base.is_opened();
         if self.is_listed(line) && self.source == LengthSource::Unknown && !told_at_the_end {
             self.findings
-                .at(line, unknown_length(used.number, self.machine.holds_on_length_alone()));
+                .at(line, unknown_length(used.number, self.machine.words_hold_on_length_alone()));
         }
         self.tools.push(used);
     }

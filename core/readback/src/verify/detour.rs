@@ -23,7 +23,8 @@ const SAME_LINE: f64 = 1e-3;
 /// rotary axes turn where the tool is retracted, or with the tip on a way of the course or on the line of the tool at
 /// one of its places, and other axes stand between those places only if the tool was retracted; in another program
 /// nothing is said of the other axes while one turns. Of a machine whose ways between passes are those that bodies leave
-/// (`low_retracts`, `link`) nothing is said of positions of the machine, nor of where axes turn: clearance is.
+/// (`low_retracts`, `link`) it is said of positions of the machine alone that the depth goes no deeper than at all places
+/// that are asked for, and nothing of where axes turn: that is a matter of clearance.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
     asked: Vec<AskedPlace>,
@@ -147,10 +148,9 @@ impl Detour {
         let mut open = open.iter().enumerate().filter(|end| !goes(end));
         open.find_map(|(_, end)| {
             let poses = asked.iter().map(|asked| &asked.pose).chain(passed);
-            // Ways that bodies leave are proven, wherever axes stand and turn on them.
+            // Ways that bodies leave are proven, wherever axes turn on them.
             let proven = machine.clearance.shortens_ways();
             match end.turns(machine, slack) {
-                _ if proven && end.machine => None,
                 Some(_) if own && proven => None,
                 Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
                 _ if own && end.led => None,
@@ -230,7 +230,8 @@ impl RapidEnd {
         }
         // While the part turns or the head swings, the linear axes go round with it: but the depth goes no deeper than
         // at all places that are asked for.
-        let goes_round = !self.machine && self.turns(machine, slack).is_some();
+        let proven = self.machine && machine.clearance.shortens_ways();
+        let goes_round = proven || !self.machine && self.turns(machine, slack).is_some();
         let mut worst: Option<(f64, StrayRapid)> = None;
         for (place, axis) in machine.axes.iter().enumerate() {
             if goes_round && !is_depth(machine, place) {
@@ -267,7 +268,7 @@ impl RapidEnd {
                 let away = axis.joint.direction.dot(&machine.tool_axis).signum();
                 let retract = frame.retract.iter().find(|(other, _)| *other == place);
                 let least = match retract {
-                    Some((_, retract)) if self.machine => {
+                    Some((_, retract)) if self.machine && !proven => {
                         kind = StrayKind::Short;
                         away * retract
                     }

@@ -115,9 +115,10 @@ fn the_machine(job: &SheetJob<'_>, programs: &[(&PathArg, &PostingReport)]) -> S
         .to_owned(),
     );
     if machine.holds_on_length_alone() {
-        let why = match machine.errs() {
-            true => "errors that depend on position are taken out of the words",
-            false => "a head turns the tool, and the words are axis positions",
+        let why = match (machine.words_hold_on_length_alone(), machine.errs()) {
+            (false, _) => "ways between passes are those that bodies leave",
+            (true, true) => "errors that depend on position are taken out of the words",
+            (true, false) => "a head turns the tool, and the words are axis positions",
         };
         let words = format!(
             "of the lengths below alone: {why}; a tool that is measured otherwise is posted again"

@@ -53,6 +53,13 @@ pub enum Core {
     Triangle([Vector3<f64>; 3]),
     /// The hull of many points.
     Hull(Box<Hull>),
+    /// What another core sweeps that goes along these vectors, in turn or at once.
+    Swept {
+        /// Where it begins.
+        of: Box<Core>,
+        /// How far it goes.
+        ways: Vec<Vector3<f64>>,
+    },
 }
 
 /// The hull of points.
@@ -89,6 +96,10 @@ impl Core {
                 }
             }
             Self::Hull(hull) => hull.at.point(hull.cloud.farthest(hull.at.rotation.tr_mul(&along))),
+            Self::Swept { of, ways } => {
+                let farther = ways.iter().filter(|way| along.dot(way) > 0.0);
+                of.support(along) + farther.sum::<Vector3<f64>>()
+            }
         }
     }
 
@@ -99,6 +110,29 @@ impl Core {
             Self::Block { centre, .. } => *centre,
             Self::Triangle([a, b, c]) => (a + b + c) / 3.0,
             Self::Hull(hull) => hull.at.point(hull.cloud.mean()),
+            Self::Swept { of, ways } => of.centre() + ways.iter().sum::<Vector3<f64>>() * 0.5,
+        }
+    }
+
+    /// A point in it that is near to `point`, of some cores the nearest: where to look, not how far it is.
+    pub fn towards(&self, point: Vector3<f64>) -> Vector3<f64> {
+        match self {
+            Self::Frustum { ends, axis, radii } => {
+                let arm = point - ends[0];
+                let (height, rise) = (axis.dot(&(ends[1] - ends[0])), axis.dot(&arm));
+                let share = if height == 0.0 { 0.0 } else { (rise / height).clamp(0.0, 1.0) };
+                let radius = radii[0] + (radii[1] - radii[0]) * share;
+                let out = arm - axis * rise;
+                let far = out.norm();
+                let out = if far > radius { out * (radius / far) } else { out };
+                ends[0] + (ends[1] - ends[0]) * share + out
+            }
+            Self::Block { centre, half } => half.iter().fold(*centre, |at, half| {
+                let share = half.dot(&(point - centre)) / half.norm_squared();
+                // Of a flat one a half is zero.
+                if share.is_finite() { at + half * share.clamp(-1.0, 1.0) } else { at }
+            }),
+            Self::Triangle(_) | Self::Hull(_) | Self::Swept { .. } => self.centre(),
         }
     }
 
@@ -120,6 +154,12 @@ impl Core {
                 let (centre, radius) = hull.cloud.sphere();
                 vec![(hull.at.point(centre), radius)]
             }
+            Self::Swept { of, ways } => {
+                let half = ways.iter().sum::<Vector3<f64>>() * 0.5;
+                let far = 0.5 * ways.iter().map(Vector3::norm).sum::<f64>();
+                let corners = of.corners().into_iter();
+                corners.map(|(corner, radius)| (corner + half, radius + far)).collect()
+            }
         }
     }
 
@@ -139,6 +179,10 @@ impl Core {
                 let at = Placement { rotation: at.rotation * hull.at.rotation, shift };
                 Self::Hull(Box::new(Hull { cloud: hull.cloud.clone(), at }))
             }
+            Self::Swept { of, ways } => Self::Swept {
+                of: Box::new(of.placed(at)),
+                ways: ways.iter().map(|way| at.direction(*way)).collect(),
+            },
         }
     }
 }
@@ -170,6 +214,12 @@ impl Convex {
     /// The piece elsewhere.
     pub fn placed(&self, at: &Placement) -> Self {
         Self { core: self.core.placed(at), round: self.round }
+    }
+
+    /// What it sweeps that goes straight along these vectors, mm, in turn or at once.
+    pub fn swept(self, ways: &[Vector3<f64>]) -> Self {
+        let core = Core::Swept { of: Box::new(self.core), ways: ways.to_vec() };
+        Self { core, round: self.round }
     }
 
     /// The hull of points.

@@ -260,8 +260,48 @@ impl Search<'_> {
         spheres.max(boxes) - ALLOWANCE
     }
 
+    /// The same by a direction of its own for each piece of a small shape: from the piece to the middle of the node.
+    fn apart_of_few(&self, one: usize, other: usize) -> f64 {
+        let (first, last) = (&self.one.nodes[one], &self.other.nodes[other]);
+        let bound = |piece: &Convex,
+                     centre: Vector3<f64>,
+                     half: Vector3<f64>,
+                     turned: &dyn Fn(Vector3<f64>) -> Vector3<f64>| {
+            let way = (centre - piece.core.towards(centre)).try_normalize(0.0);
+            let Some(way) = way else { return 0.0 };
+            let far = way.dot(&piece.core.support(way)) + piece.round;
+            way.dot(&centre) - turned(way).abs().dot(&half) - far
+        };
+        let least = match (first.below, last.below) {
+            (_, Below::Pieces(start, count)) => {
+                let centre = self.at.back(first.centre);
+                let turned = |way: Vector3<f64>| self.at.rotation * way;
+                let pieces = &self.other.pieces[start..start + count];
+                pieces
+                    .iter()
+                    .map(|piece| bound(piece, centre, first.half, &turned))
+                    .fold(f64::INFINITY, f64::min)
+            }
+            (Below::Pieces(start, count), _) => {
+                let centre = self.at.point(last.centre);
+                let turned = |way: Vector3<f64>| self.at.rotation.tr_mul(&way);
+                let pieces = &self.one.pieces[start..start + count];
+                pieces
+                    .iter()
+                    .map(|piece| bound(piece, centre, last.half, &turned))
+                    .fold(f64::INFINITY, f64::min)
+            }
+            _ => f64::NEG_INFINITY,
+        };
+        least - ALLOWANCE
+    }
+
     fn nodes(&mut self, one: usize, other: usize) {
         let bound = self.apart(one, other);
+        if self.passes(bound) {
+            return;
+        }
+        let bound = self.apart_of_few(one, other);
         if self.passes(bound) {
             return;
         }
@@ -304,8 +344,24 @@ impl Search<'_> {
             let near = shift + beside.dot(&other.core.support(-beside)) - other.round;
             bound = bound.max(near - far);
         }
+        if self.passes(bound - ALLOWANCE) {
+            return;
+        }
+        let bound = self.between([first, last]);
         if !self.passes(bound - ALLOWANCE) {
             self.pieces([first, last]);
         }
+    }
+
+    /// Two pieces are no nearer than this by the direction between points of them that are likely to be near, mm.
+    fn between(&self, [first, last]: [usize; 2]) -> f64 {
+        let (one, other) = (&self.one.pieces[first], &self.other.pieces[last]);
+        let there = other.core.towards(self.at.back(one.core.centre()));
+        let there = self.at.point(there);
+        let way = (there - one.core.towards(there)).try_normalize(0.0);
+        let Some(along) = way else { return 0.0 };
+        let beside = self.at.rotation.tr_mul(&along);
+        let far = along.dot(&one.core.support(along)) + one.round;
+        along.dot(&self.at.shift) + beside.dot(&other.core.support(-beside)) - other.round - far
     }
 }

@@ -1,5 +1,7 @@
 //! A mesh: its parts that hang together, which of them are closed, and which are convex.
 
+use std::collections::HashMap;
+
 use nalgebra::Vector3;
 
 use crate::cloud::Cloud;
@@ -40,13 +42,21 @@ pub(crate) struct Part {
 }
 
 /// One of the three edges of a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug)]
 struct Edge {
     /// Its corners, the lesser first.
     ends: [u32; 2],
     /// The triangle goes along it from the greater to the lesser.
     against: bool,
     triangle: u32,
+}
+
+impl Edge {
+    /// Edges of the same corners follow one another.
+    fn key(&self) -> [u64; 2] {
+        let [one, other] = self.ends.map(u64::from);
+        [one << 32 | other, u64::from(self.triangle) << 1 | u64::from(self.against)]
+    }
 }
 
 /// What is seen of a part at its edges.
@@ -102,19 +112,12 @@ pub(crate) fn parts(triangles: &[[Vector3<f64>; 3]]) -> (Vec<Part>, MeshFaults) 
 /// A number for each corner of each triangle: the same for corners that are in the same place.
 fn corners(triangles: &[[Vector3<f64>; 3]]) -> Vec<u32> {
     let all = triangles.as_flattened();
-    let key = |place: u32| {
-        let corner = all[place as usize];
-        [corner.x, corner.y, corner.z].map(|value| (value + 0.0).to_bits())
+    let mut first = HashMap::with_capacity(all.len() / 4);
+    let number = |(place, corner): (usize, &Vector3<f64>)| {
+        let key = [corner.x, corner.y, corner.z].map(|value| (value + 0.0).to_bits());
+        *first.entry(key).or_insert(place as u32)
     };
-    let mut order: Vec<u32> = (0..all.len() as u32).collect();
-    order.sort_unstable_by_key(|place| key(*place));
-    let mut numbers = vec![0; all.len()];
-    for same in order.chunk_by(|one, other| key(*one) == key(*other)) {
-        for place in same {
-            numbers[*place as usize] = same[0];
-        }
-    }
-    numbers
+    all.iter().enumerate().map(number).collect()
 }
 
 fn find(root: &mut [u32], mut place: u32) -> u32 {
@@ -140,7 +143,7 @@ fn edges(
             edges.push(Edge { ends, against: from > to, triangle: triangle as u32 });
         }
     }
-    edges.sort_unstable();
+    edges.sort_unstable_by_key(Edge::key);
     let mut faults = MeshFaults::default();
     for same in edges.chunk_by(|one, other| one.ends == other.ends) {
         let seen = &mut seen[part_of[same[0].triangle as usize]];

@@ -48,6 +48,38 @@ impl View {
         own
     }
 
+    /// Places of its axes in its own chain, and in the machine's.
+    pub(crate) fn axes(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.axes.iter().copied().enumerate()
+    }
+
+    /// Whether an axis turns, by its place in the own chain.
+    pub(crate) fn is_rotary(&self, place: usize) -> bool {
+        self.chain.joints()[place].rotary
+    }
+
+    /// All of the body is within this of its middle, mm.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// How much farther along a direction each linear axis takes the body for a mm of its way, by its place in the own chain;
+    /// rotary axes stand as in `joints`.
+    pub(crate) fn slopes(&self, joints: &Joints, along: Vector3<f64>) -> Joints {
+        let turns = self.chain.turns(&self.of(joints));
+        let all = self.chain.joints();
+        let mut slopes = Joints::default();
+        for (place, joint) in all.iter().enumerate().filter(|(_, joint)| !joint.rotary) {
+            let front = all[..place].iter().enumerate().rev().filter(|(_, joint)| joint.rotary);
+            let way = front.fold(joint.direction, |way, (place, joint)| {
+                let (sine, cosine) = turns.of(place);
+                turn(way, joint.direction, sine, cosine)
+            });
+            slopes[place] = along.dot(&way);
+        }
+        slopes
+    }
+
     /// Where the middle of the body is, mm, frame of the other's link.
     pub fn centre(&self, joints: &Joints) -> Vector3<f64> {
         self.chain.forward(&self.of(joints)).tip
@@ -96,7 +128,7 @@ impl View {
     }
 
     /// Some rotary axis between the two turns on `piece`.
-    pub(crate) fn turns(&self, piece: &Piece) -> bool {
+    pub fn turns(&self, piece: &Piece) -> bool {
         let [from, to] = &piece.ends;
         let mut axes = self.chain.joints().iter().zip(&self.axes);
         axes.any(|(joint, axis)| joint.rotary && from[*axis] != to[*axis])
@@ -111,7 +143,7 @@ impl View {
 
     /// How far each linear axis takes the body on `piece`, mm, frame of the other's link, rotary axes as they stand where it
     /// begins.
-    pub(crate) fn slides(&self, piece: &Piece) -> impl Iterator<Item = Vector3<f64>> {
+    pub fn slides(&self, piece: &Piece) -> impl Iterator<Item = Vector3<f64>> {
         let [from, to] = &piece.ends;
         let start = self.centre(from);
         let moved = self.axes.iter().filter(|axis| from[**axis] != to[**axis]);

@@ -1,6 +1,6 @@
 //! A part of a way, and between which axis values all axes stay on it.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use post_machine::kinematics::{Joints, MAX_AXES, Solver, TcpBlock, Trace};
 use post_motion::path::{BSpline, Curve, Interpolation, Stance, turns};
 
@@ -37,6 +37,11 @@ impl Piece {
     /// A machine that stands.
     pub fn at(joints: &Joints) -> Self {
         Self { ends: [*joints; 2], stray: 0.0, independent: false, share: [0.0, 1.0] }
+    }
+
+    /// All axes go for themselves between these ends, the linear ones farther by `stray` mm together.
+    pub(crate) fn between(ends: [Joints; 2], stray: f64) -> Self {
+        Self { ends, stray, independent: true, share: [0.0, 1.0] }
     }
 
     /// The halves of a piece of `way` on both sides of its `middle`; of a box those across the axis `widest`. None where
@@ -89,7 +94,10 @@ impl Way<'_> {
         }
         let share = piece.share;
         let curved = self.curved(share)?;
-        let reach = self.solver.linear_reach();
+        let reach = match turning {
+            true => self.solver.linear_reach(),
+            false => self.reach(&piece.ends[0]),
+        };
         // What is no number is told from zero: it proves nothing.
         let mut stray = if curved == 0.0 { 0.0 } else { reach * curved };
         if turning {
@@ -106,6 +114,20 @@ impl Way<'_> {
         }
         // Of a piece that turns too far nothing is known, but of its halves; of one that turns little nothing ever will be.
         (piece.stray.is_finite() || share[1] - share[0] > SHORTEST).then_some(piece)
+    }
+
+    /// No linear axis goes farther than this times the way of the tip, where the rotary axes stand as in `joints`, between the
+    /// linear ones too; infinite where the linear axes are not three that span a volume.
+    fn reach(&self, joints: &Joints) -> f64 {
+        let reach = self.solver.linear_reach();
+        let chain = self.solver.chain();
+        let all = chain.joints().iter().enumerate();
+        let linear: Vec<usize> =
+            all.filter(|(_, joint)| !joint.rotary).map(|(place, _)| place).collect();
+        let ([x, y, z], true) = (linear.as_slice(), reach.is_infinite()) else { return reach };
+        let ways = [x, y, z].map(|place| chain.way_of(*place, joints));
+        let Some(inverse) = Matrix3::from_columns(&ways).try_inverse() else { return reach };
+        inverse.row_iter().map(|row| row.norm()).fold(0.0, f64::max)
     }
 
     /// A piece whose tip goes straight, by the ranges of its linear axes: where rotary axes stand between these. A piece

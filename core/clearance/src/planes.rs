@@ -25,8 +25,13 @@ impl Planes {
         Self { along, far: along.dot(&stands.support(along)), last: None }
     }
 
+    /// Unit vector towards the body that moves, frame of the other.
+    pub(crate) fn along(&self) -> Vector3<f64> {
+        self.along
+    }
+
     /// How far they are apart along it where the axes stand on `joints`, mm: no nearer are they to one another.
-    fn gap(&mut self, view: &View, moves: &Shape, joints: &Joints) -> f64 {
+    pub(crate) fn gap(&mut self, view: &View, moves: &Shape, joints: &Joints) -> f64 {
         if let Some((_, gap)) = self.last.filter(|(last, _)| last == joints) {
             return gap;
         }

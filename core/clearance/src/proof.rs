@@ -4,69 +4,28 @@
 //! follows: it is a budget that motions use up, and it is computed again where it is spent. Where that is not enough the
 //! way is halved. Planes that held two bodies apart are tried before that: they show it at once while one goes by the other.
 
+mod body;
 mod closest;
+mod room;
 
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joint, Joints};
 
-use crate::ALLOWANCE;
 use crate::distance::{self, Apart};
 use crate::pair::View;
 use crate::piece::{Piece, Way};
 use crate::placement::Placement;
 use crate::planes::Planes;
 use crate::shape::Shape;
+use room::{Lately, Room, Sleep, Spare};
+
+pub use body::{Body, BodyKind, Rules};
 
 /// Pieces of one motion that a pair is looked at on; what is not proven then is not.
 const MOST_PIECES: u64 = 1 << 13;
 
 /// The nearest approach is known to this share of it: where the rest cannot be nearer, no distance is computed.
 const CLOSE: f64 = 0.95;
-
-/// What a body is, for what it may touch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BodyKind {
-    /// A part of the machine.
-    Machine,
-    /// What holds the part.
-    Fixture,
-    /// What is cut.
-    Stock,
-    /// What of the tool does not cut.
-    Holder,
-    /// What of the tool cuts.
-    Cutter,
-}
-
-/// A body.
-#[derive(Clone, Debug)]
-pub struct Body {
-    /// What messages call it.
-    pub name: String,
-    /// What it is.
-    pub kind: BodyKind,
-    /// The link that it hangs on: 0 is that of the part, n what follows the nth axis.
-    pub link: usize,
-    /// Its shape, machine frame, all axes at zero.
-    pub shape: Shape,
-}
-
-/// What is to be kept.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rules {
-    /// Distance at feed, mm.
-    pub keep: f64,
-    /// Distance at rapid, mm.
-    pub rapid: f64,
-    /// What cannot be told apart from a distance that is too short by less than this counts as one, mm.
-    pub within: f64,
-}
-
-impl Default for Rules {
-    fn default() -> Self {
-        Self { keep: 0.0, rapid: 0.0, within: 0.01 }
-    }
-}
 
 /// A motion that is to be proven.
 #[derive(Clone, Copy, Debug)]
@@ -129,6 +88,8 @@ struct Pair {
     /// Which of them sees the body go less far by turns.
     nearer: usize,
     known: Option<Known>,
+    /// Wherever in it the axes stand they are apart by what is to be kept, at feed and at rapid.
+    room: Option<Room>,
     /// In the frame of the body that `nearer` looks from.
     planes: Option<Planes>,
     guess: [usize; 2],
@@ -152,7 +113,10 @@ pub struct Proof {
     axes: Vec<Joint>,
     rules: Rules,
     bodies: Vec<Body>,
+    /// Those that are looked at first, then those that sleep.
     pairs: Vec<Pair>,
+    sleep: Sleep,
+    lately: Lately,
     last: Option<Joints>,
     distances: u64,
 }
@@ -173,7 +137,9 @@ impl Proof {
                 }
             }
         }
-        Self { axes: axes.to_vec(), rules, bodies, pairs, last: None, distances: 0 }
+        let (sleep, lately) = (Sleep::none(pairs.len()), Lately::default());
+        let axes = axes.to_vec();
+        Self { axes, rules, bodies, pairs, sleep, lately, last: None, distances: 0 }
     }
 
     /// The same with other rules for some pairs.
@@ -204,6 +170,12 @@ impl Proof {
         Some(pair.rules.unwrap_or(self.rules))
     }
 
+    /// What two bodies keep, by their places; none of a pair that is not looked at.
+    pub fn rules_between(&self, bodies: [usize; 2]) -> Option<Rules> {
+        let pair = self.pairs.iter().find(|pair| pair.result.bodies == bodies)?;
+        Some(pair.rules.unwrap_or(self.rules))
+    }
+
     /// The bodies.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
@@ -221,9 +193,8 @@ impl Proof {
 
     /// Another tool is in the spindle: what was known of distances does not hold any more.
     pub fn forget(&mut self) {
-        for pair in &mut self.pairs {
-            pair.known = None;
-        }
+        self.pairs.iter_mut().for_each(Pair::forget);
+        self.sleep = Sleep::none(self.pairs.len());
     }
 
     /// The distance of each pair where the axes stand on `joints`, what meshes enclose among it.
@@ -246,27 +217,27 @@ impl Proof {
             self.forget();
         }
         self.last = Some(to);
+        self.lately.take(&to);
         let whole = motion.way.whole();
-        let Self { bodies, pairs, rules, distances, .. } = self;
-        for pair in pairs {
+        let sleeps = whole.as_ref().is_some_and(|whole| self.sleep.holds(whole));
+        let Self { bodies, pairs, rules, distances, sleep, lately, .. } = self;
+        let awake = if sleeps { sleep.awake } else { pairs.len() };
+        for pair in &mut pairs[..awake] {
             let [one, other] = pair.result.bodies.map(|place| &bodies[place]);
             if !looks(one, other) {
-                pair.known = None;
+                pair.forget();
                 continue;
             }
-            let touches = [one.kind, other.kind];
             let rules = pair.rules.as_ref().unwrap_or(rules);
-            let keep = match (motion.rapid, touches) {
-                // A rapid begins and ends as near to what is cut as the CL file has it.
-                (_, [BodyKind::Cutter, BodyKind::Stock] | [BodyKind::Stock, BodyKind::Cutter]) => {
-                    0.0
-                }
-                (true, _) => rules.rapid,
-                (false, _) => rules.keep,
-            };
-            let within = rules.within;
-            let trial = Trial { bodies, motion, keep: keep.max(ALLOWANCE), within };
+            let keeps = rules.keeps([one.kind, other.kind]);
+            let keep = keeps[usize::from(motion.rapid)];
+            let (within, spans) = (rules.within, &lately.spans);
+            let most = keeps[0].max(keeps[1]);
+            let trial = Trial { bodies, motion, keep, most, within, spans };
             *distances += pair.take(&trial, whole.as_ref());
+        }
+        if let Some(whole) = whole.as_ref().filter(|_| !sleeps) {
+            *sleep = Sleep::new(pairs, whole);
         }
     }
 
@@ -305,7 +276,11 @@ struct Trial<'a> {
     bodies: &'a [Body],
     motion: &'a Move<'a>,
     keep: f64,
+    /// What is to be kept at most, at feed or at rapid, mm.
+    most: f64,
     within: f64,
+    /// How far each axis has gone lately, mm and radians.
+    spans: &'a Joints,
 }
 
 impl Pair {
@@ -323,7 +298,16 @@ impl Pair {
         };
         let views = [view(one, other), view(other, one)];
         let nearer = usize::from(views[1].arms() < views[0].arms());
-        Self { views, nearer, known: None, planes: None, guess: [0; 2], rules: None, result }
+        Self {
+            views,
+            nearer,
+            known: None,
+            room: None,
+            planes: None,
+            guess: [0; 2],
+            rules: None,
+            result,
+        }
     }
 
     /// How far they are apart: no closer than that it is as much as [`Enough`] says. `fresh`: what meshes enclose is looked
@@ -388,8 +372,15 @@ impl Pair {
             self.refuse(trial, Verdict::Unproven, &joints, None);
             return 0;
         };
+        let room = self.room.as_ref();
+        let room = room.filter(|room| room.left >= self.least(trial) && room.holds(whole));
+        if let Some(left) = room.map(|room| room.left) {
+            self.result.clear_by = self.result.clear_by.min(left);
+            return 0;
+        }
         if let Some(left) = self.left(trial, whole) {
             self.result.clear_by = self.result.clear_by.min(left);
+            self.make_room(trial, whole);
             return 0;
         }
         let mut computed = 0;
@@ -408,7 +399,28 @@ impl Pair {
             }
         }
         self.result.clear_by = self.result.clear_by.min(clear_by);
+        self.make_room(trial, whole);
         computed
+    }
+
+    /// Nothing is known of their distance any more.
+    fn forget(&mut self) {
+        (self.known, self.room) = (None, None);
+    }
+
+    /// Finds a box about the end of a motion in which they are apart by all that is ever to be kept.
+    fn make_room(&mut self, trial: &Trial<'_>, whole: &Piece) {
+        let least = trial.most.max(self.closely(trial));
+        let view = &self.views[self.nearer];
+        let moves = &trial.bodies[self.result.bodies[1 - self.nearer]].shape;
+        let planes = self.planes.as_mut();
+        let room = planes
+            .and_then(|planes| Room::between(view, (planes, moves), least, whole, trial.spans));
+        self.room = room.or_else(|| {
+            let Known { joints, levers, at_least } = self.known.as_ref()?;
+            let spare = Spare { joints, levers, at_least: *at_least, least };
+            Room::new(view, &spare, whole, trial.spans)
+        });
     }
 
     /// Finds how far they are apart in the middle of a piece, whose halves go to those that are `waiting`; it is not halved if it
@@ -428,7 +440,12 @@ impl Pair {
         let reach = self.reach(&known, piece, 0.0);
         let closely = trial.keep + trial.within;
         let enough = Enough { wrapped: self.least(trial) + reach, closely };
-        let apart = self.distance(trial.bodies, &joints, self.known.is_none(), enough);
+        let fresh = self.known.is_none();
+        let mut apart = self.distance(trial.bodies, &joints, fresh, enough);
+        if apart.at_most < trial.keep && !fresh {
+            // Their surfaces are near: one may be inside of the other.
+            apart = self.distance(trial.bodies, &joints, true, enough);
+        }
         if apart.at_most < self.result.nearest.0 {
             self.result.nearest = (apart.at_most, trial.motion.line);
         }
@@ -468,7 +485,12 @@ impl Pair {
 
     /// What a piece is to leave of the distance, mm: what is to be kept, and no less than the nearest approach by much.
     fn least(&self, trial: &Trial<'_>) -> f64 {
-        trial.keep.max(CLOSE * self.result.nearest.0 - trial.within)
+        trial.keep.max(self.closely(trial))
+    }
+
+    /// The least that need not be looked at for the nearest approach, mm.
+    fn closely(&self, trial: &Trial<'_>) -> f64 {
+        CLOSE * self.result.nearest.0 - trial.within
     }
 
     /// They are apart by so much on a piece, mm, if that is enough: by the distance that is known less what one can come nearer
@@ -515,7 +537,7 @@ impl Pair {
         joints: &Joints,
         apart: Option<&Apart>,
     ) {
-        self.known = None;
+        self.forget();
         self.result.faults += 1;
         let known = self.result.fault.as_ref().map(|fault| fault.verdict);
         let worse = match known {

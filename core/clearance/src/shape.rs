@@ -116,6 +116,14 @@ impl Shape {
         self.nodes.first().map_or((Vector3::zeros(), 0.0), |root| (root.centre, root.radius))
     }
 
+    /// Convex pieces that hold all of it: its own, or what a mesh of more than `most` is wrapped in.
+    pub fn held_by(&self, most: usize) -> Vec<Convex> {
+        match &self.cloud {
+            Some(cloud) if self.pieces.len() > most => vec![Convex::hull(cloud.clone())],
+            _ => self.pieces.clone(),
+        }
+    }
+
     /// What is wrong with its mesh.
     pub fn faults(&self) -> MeshFaults {
         self.faults

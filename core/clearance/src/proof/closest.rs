@@ -1,5 +1,6 @@
 //! How near any two bodies come on each motion, for who shows that along the path.
 
+use super::room::Sleep;
 use super::{Body, Move, Proof, Trial};
 use crate::ALLOWANCE;
 
@@ -20,15 +21,18 @@ impl Proof {
         }
         self.last = Some(to);
         let whole = motion.way.whole();
+        self.lately.take(&to);
+        self.sleep = Sleep::none(self.pairs.len());
         // Who was nearest is so again mostly: the others need not be told as closely then.
         self.pairs.sort_by(|one, other| one.result.nearest.0.total_cmp(&other.result.nearest.0));
-        let Self { bodies, pairs, rules, distances, .. } = self;
-        let trial = Trial { bodies, motion, keep: ALLOWANCE, within: rules.within };
+        let Self { bodies, pairs, rules, distances, lately, .. } = self;
+        let (keep, within, spans) = (ALLOWANCE, rules.within, &lately.spans);
+        let trial = Trial { bodies, motion, keep, most: keep, within, spans };
         let (mut nearest, mut clear_by) = (f64::INFINITY, f64::INFINITY);
         for pair in pairs {
             let [one, other] = pair.result.bodies.map(|place| &bodies[place]);
             if !looks(one, other) {
-                pair.known = None;
+                pair.forget();
                 continue;
             }
             let result = &mut pair.result;

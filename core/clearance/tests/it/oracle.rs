@@ -40,7 +40,7 @@ pub fn nearest(piece: &Convex, point: V) -> V {
             at + half * share.clamp(-1.0, 1.0)
         }),
         Core::Triangle(corners) => on_triangle(*corners, point),
-        Core::Hull(_) => unreachable!("hulls are held against their triangles"),
+        Core::Hull(_) | Core::Swept { .. } => unreachable!("held against what they are made of"),
     };
     let out = point - core;
     match out.norm() <= piece.round {
@@ -135,7 +135,7 @@ pub fn moved(piece: &Convex, by: &Isometry3<f64>) -> Convex {
             Core::Block { centre: point(centre), half: half.each_ref().map(turned) }
         }
         Core::Triangle(corners) => Core::Triangle(corners.each_ref().map(point)),
-        Core::Hull(_) => unreachable!("hulls are held against their triangles"),
+        Core::Hull(_) | Core::Swept { .. } => unreachable!("held against what they are made of"),
     };
     Convex { core, round: piece.round }
 }

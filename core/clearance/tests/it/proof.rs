@@ -353,6 +353,89 @@ fn on_each_motion_the_nearest_two_are_told() {
     assert!(close * 20 >= told * 19, "{close} of {told}");
 }
 
+/// Many bodies along many motions, short ones mostly: pairs that sleep in a box of axis values are as far apart there as is
+/// proven.
+#[test]
+fn pairs_that_sleep_are_as_far_apart_as_is_proven() {
+    let (rounds, mut rng) = randomised(90, 318);
+    let (mut clear, mut close, mut faults, mut distances, mut motions) = (0, 0, 0, 0, 0);
+    for _ in rounds {
+        let machine = Random::new(&mut rng, 2, 0);
+        let Some(solver) = solver(&machine) else { continue };
+        let joints = &machine.reference.joints;
+        let size = rng.range(10.0, 80.0);
+        let pieces: Vec<(usize, Convex)> = (0..6)
+            .map(|_| {
+                let at = rng.point(300.0);
+                (rng.pick(joints.len() + 1), any_piece(&mut rng, at, size))
+            })
+            .collect();
+        let body = |(link, piece): &(usize, Convex)| Body {
+            name: String::new(),
+            kind: BodyKind::Machine,
+            link: *link,
+            shape: Shape::new(vec![piece.clone()]).unwrap(),
+        };
+        let rules = Rules { keep: rng.order(-2.0, 1.0), rapid: rng.order(-2.0, 1.0), within: 0.01 };
+        let all = pieces.iter().map(body).collect();
+        let mut proof = Proof::new(joints, all, rules, |_, _| true);
+        let mut sampled = std::collections::BTreeMap::new();
+        let mut from = machine.values(&mut rng);
+        for motion in 0..120 {
+            let mut to = machine.values(&mut rng);
+            let share = if motion % 40 == 10 { 0.3 } else { rng.order(-4.5, -2.5) };
+            for (to, from) in to.iter_mut().zip(from) {
+                // Some axes stand still.
+                *to = from + (*to - from) * share * f64::from(rng.pick(3).min(1) as u8);
+            }
+            let ends = [stance(&solver, from), stance(&solver, to)];
+            let rapid = rng.pick(4) == 0;
+            let interpolation = &Interpolation::Axes;
+            let way = Way {
+                solver: &solver,
+                interpolation,
+                ends: [&ends[0], &ends[1]],
+                independent: rapid,
+            };
+            proof.take(&Move { way, rapid, line: motion }, |_, _| true);
+            motions += 1;
+            for look in 0..=3 {
+                let t = f64::from(look) / 3.0;
+                let share = |_| if rapid { rng.range(0.0, 1.0) } else { t };
+                let shares: [f64; post_machine::kinematics::MAX_AXES] = std::array::from_fn(share);
+                let q =
+                    std::array::from_fn(|axis| from[axis] + (to[axis] - from[axis]) * shares[axis]);
+                let placed: Vec<_> = pieces
+                    .iter()
+                    .map(|(link, piece)| moved(piece, &product(joints, &q, 0, *link)))
+                    .collect();
+                for first in 0..placed.len() {
+                    for second in first + 1..placed.len() {
+                        let found = apart(&placed[first], &placed[second]);
+                        let least = sampled.entry([first, second]).or_insert(f64::INFINITY);
+                        *least = found.min(*least);
+                    }
+                }
+            }
+            from = to;
+        }
+        distances += proof.distances();
+        for result in proof.results() {
+            let truth = sampled[&result.bodies];
+            if result.faults > 0 {
+                faults += 1;
+                continue;
+            }
+            clear += 1;
+            assert!(result.clear_by <= truth + 1e-9, "proven {} sampled {truth}", result.clear_by);
+            close += u32::from(result.clear_by >= 0.93 * result.nearest.0 - 0.02);
+        }
+    }
+    println!("{clear} clear, {faults} not, {distances} distances on {motions} motions");
+    assert!(clear > at_least(200), "{clear} {faults}");
+    assert!(close * 20 >= clear * 19, "{close} of {clear}");
+}
+
 /// A tool along a fixture of curved pieces: what is to spare by a hundredth is proven.
 #[test]
 fn what_is_kept_with_a_hundredth_to_spare_is_proven() {

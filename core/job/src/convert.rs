@@ -267,6 +267,7 @@ impl<'a> Conversion<'a> {
             report: &made.report,
             verification: Some(&made.held.found),
             clearance: None,
+            left: None,
             prediction: None,
             findings: &made.findings,
             job: "convert",

@@ -3,20 +3,26 @@
 use nalgebra::Vector3;
 use post_clearance::ALLOWANCE;
 use post_clearance::convex::Convex;
+use post_clearance::distance::Apart;
 use post_clearance::pair::View;
 use post_clearance::piece::{Piece, Way};
 use post_clearance::placement::Placement;
 use post_machine::kinematics::{Joint, Joints};
 use post_motion::path::turns;
 
+use crate::been::goes_alone;
+use crate::chip::Chip;
 use crate::field::{Cutter, Field, Volume};
 use crate::profile::ToolPose;
 
 /// Pieces of a way that a body is looked at on; what is not proven then is not.
-const MOST_PIECES: u64 = 1 << 13;
+const MOST_PIECES: u64 = 1 << 11;
 
 /// Pieces of a cut; of what is longer nothing is known any more for certain.
 const MOST_STEPS: u64 = 1 << 17;
+
+/// What a body sweeps is looked at at once on ways no longer than so many times its radius.
+const LONGEST: f64 = 4.0;
 
 /// The nearest approach is known to this share of it: on a line, and in a box that axes span which go for themselves.
 const CLOSE: [f64; 2] = [0.8, 0.5];
@@ -32,6 +38,16 @@ pub struct Mounted {
 }
 
 impl Mounted {
+    /// A body on a link of its own, all of it within `radius` of `centre`, mm, machine frame, all axes at zero.
+    pub fn on_link(
+        (axes, link): (&[Joint], usize),
+        field: Placement,
+        (centre, radius): (Vector3<f64>, f64),
+    ) -> Self {
+        let view = View::new(axes, 0, link, centre, radius);
+        Self { field, view, at_zero: ToolPose { tip: centre, axis: Vector3::z() } }
+    }
+
     /// A body that begins at `at_zero`, all of it within `radius` of `centre`, mm, machine frame, all axes at zero.
     pub fn new(
         axes: &[Joint],
@@ -61,9 +77,8 @@ impl Mounted {
     /// Both ends of a way that is straight and on which it does not turn.
     pub fn straight(&self, way: &Way<'_>) -> Option<[ToolPose; 2]> {
         let ends = way.ends.map(|stance| stance.joints);
-        let moving = ends[0].iter().zip(&ends[1]).filter(|(from, to)| from != to).count();
         let bends = turns(way.solver.chain(), way.ends) || way.interpolation.is_curved();
-        let strays = bends || (way.independent && moving > 1);
+        let strays = bends || (way.independent && !goes_alone(&ends[0], &ends[1]));
         (!strays).then(|| ends.each_ref().map(|joints| self.pose(joints)))
     }
 
@@ -77,14 +92,18 @@ impl Mounted {
     }
 }
 
-/// What a cutter removes of a field along a way, at feed: how much. Where it is not known how the axes go nothing is removed
+/// What a cutter removes of a field along a way, at feed: how much, and how far it goes into it. Where it is not known how the axes go nothing is removed
 /// for certain but at the ends, and nothing is left for certain.
-pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) -> Volume {
-    let mut removed = Volume::default();
+pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) -> Chip {
+    let (mut removed, mut engagement) = (Volume::default(), None);
     let straight = tool.straight(way);
     let pose = |joints: &Joints| tool.pose(joints);
     match straight {
-        Some(poses) => removed += field.remove_straight(cutter, poses),
+        Some(poses) => {
+            let chip = field.remove_straight(cutter, poses);
+            removed += chip.volume;
+            engagement = chip.engagement;
+        }
         None => {
             for stance in way.ends {
                 removed += field.remove(cutter, &pose(&stance.joints));
@@ -124,7 +143,7 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
         removed.at_most = removed.at_most.max(field.volume().at_most);
         field.doubt_all();
     }
-    removed
+    Chip { volume: removed, engagement }
 }
 
 /// What is known of a body and a field on a way.
@@ -153,7 +172,8 @@ pub struct Place {
 #[derive(Clone, Debug)]
 pub struct Watched {
     mounted: Mounted,
-    profile: Vec<[f64; 2]>,
+    /// Of a body of revolution.
+    profile: Option<Vec<[f64; 2]>>,
     /// Its pieces, machine frame, all axes at zero.
     pieces: Vec<Convex>,
     known: Option<Known>,
@@ -175,6 +195,12 @@ impl Watched {
     pub fn new(mounted: Mounted, profile: Vec<[f64; 2]>) -> Self {
         let ToolPose { tip, axis } = mounted.at_zero;
         let pieces = post_clearance::shape::turned_pieces(&profile, tip, axis);
+        Self { profile: Some(profile), ..Self::of_pieces(mounted, pieces) }
+    }
+
+    /// A body of convex pieces, machine frame, all axes at zero.
+    pub fn of_pieces(mounted: Mounted, pieces: Vec<Convex>) -> Self {
+        let profile = None;
         Self { mounted, profile, pieces, known: None, nearest: f64::INFINITY, distances: 0 }
     }
 
@@ -215,16 +241,23 @@ impl Watched {
                 let point = Vector3::zeros();
                 return self.refuse(Place { joints, at_most: f64::INFINITY, point });
             };
-            self.distances += 1;
+            if let Some(left) = self.swept(field, &piece, keep) {
+                clear_by = clear_by.min(left);
+                continue;
+            }
             let at = self.mounted.placement(&joints);
-            let placed: Vec<Convex> = self.pieces.iter().map(|piece| piece.placed(&at)).collect();
-            let apart = field.apart(&placed);
-            self.nearest = self.nearest.min(apart.at_most);
+            let apart = self.apart(field, &at, &[]);
             let place = Place { joints, at_most: apart.at_most, point: apart.point };
             if apart.at_most < keep {
-                let pose = self.mounted.pose(&joints);
                 // Whether axes that go for themselves come by there hangs on how fast each of them is.
-                let common = (!piece.independent).then(|| field.common(&self.profile, &pose));
+                let common = (!piece.independent).then(|| match &self.profile {
+                    Some(profile) => field.common(profile, &self.mounted.pose(&joints)),
+                    None => {
+                        let pieces: Vec<_> =
+                            self.pieces.iter().map(|piece| piece.placed(&at)).collect();
+                        field.common_near(&pieces, apart.point)
+                    }
+                });
                 return match common.flatten() {
                     Some(point) => {
                         self.known = None;
@@ -255,6 +288,44 @@ impl Watched {
             }
         }
         Found::Clear(clear_by)
+    }
+
+    /// How far it is from what may be left where it stands, or all along `ways` from there, mm, frame of the field.
+    fn apart(&mut self, field: &mut Field, at: &Placement, ways: &[Vector3<f64>]) -> Apart {
+        self.distances += 1;
+        let placed = self.pieces.iter().map(|piece| match ways.is_empty() {
+            true => piece.placed(at),
+            false => piece.placed(at).swept(ways),
+        });
+        let apart = field.apart(&placed.collect::<Vec<_>>());
+        self.nearest = self.nearest.min(apart.at_most);
+        apart
+    }
+
+    /// How far it is from what may be left on all of a piece on which it goes straight and does not turn, mm, if that is no less
+    /// than is to be kept: by all that it sweeps. What is long is not looked at at once.
+    fn swept(&mut self, field: &mut Field, piece: &Piece, keep: f64) -> Option<f64> {
+        let view = &self.mounted.view;
+        if piece.stray > 0.0 || view.turns(piece) {
+            return None;
+        }
+        let [from, to] = piece.ends;
+        let at = self.mounted.placement(&from);
+        let ways: Vec<Vector3<f64>> = match piece.independent {
+            true => {
+                view.slides(piece).map(|way| self.mounted.field.rotation.tr_mul(&way)).collect()
+            }
+            false => vec![self.mounted.placement(&to).shift - at.shift],
+        };
+        if ways.iter().map(Vector3::norm).sum::<f64>() > LONGEST * view.radius() {
+            return None;
+        }
+        let left = self.apart(field, &at, &ways).at_least;
+        (left >= keep).then(|| {
+            let levers = self.mounted.view.levers(&to);
+            self.known = Some(Known { joints: to, levers, at_least: left });
+            left
+        })
     }
 
     fn refuse(&mut self, place: Place) -> Found {

@@ -1,7 +1,8 @@
-//! Where a tool has been: there nothing is left that it could touch.
+//! Where a tool has been: there nothing is left that it could touch, and it may go there again at rapid.
 
 use nalgebra::Vector3;
 use post_clearance::convex::Convex;
+use post_machine::kinematics::Joints;
 
 use crate::field::Field;
 use crate::profile::ToolPose;
@@ -9,9 +10,24 @@ use crate::profile::ToolPose;
 /// Ways that are remembered, the latest ones.
 const MOST: usize = 512;
 
-/// Tool axes whose difference is no more than this are the same, and points no farther apart than this the same, mm: what
-/// rounding leaves of equal words.
+/// Tool axes whose difference is no more than this are the same: what rounding leaves of equal words.
 const SAME: f64 = 1e-7;
+
+/// Half of the last place of a word, mm or degrees: controls have three decimals or more.
+const HALF_PLACE: f64 = 0.5e-3;
+
+/// How far a way of `length` mm along the tool axis may end beside it as its words are printed, mm: each of three linear words
+/// at both ends, and the directions of two rotary ones.
+pub fn lean(length: f64) -> f64 {
+    6.0 * HALF_PLACE + 2.0 * HALF_PLACE.to_radians() * libm::fabs(length)
+}
+
+/// One axis goes alone from one stance to another, but for what its words are printed to.
+pub fn goes_alone(from: &Joints, to: &Joints) -> bool {
+    let ways = from.iter().zip(to).map(|(from, to)| libm::fabs(to - from));
+    let (all, most) = ways.fold((0.0, 0.0f64), |(all, most), way| (all + way, most.max(way)));
+    all - most <= lean(most)
+}
 
 /// A straight way without turning that a tool has gone.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +51,35 @@ struct Heights {
     widest: f64,
 }
 
+impl Heights {
+    /// How far up a way is free of what a tool may have left on one that is gone: above the lower end of one along the axis, else
+    /// above the tip on it, mm.
+    fn reach(&self, over: &Over, axial: bool) -> f64 {
+        self.thins - if axial { over.least } else { over.most }
+    }
+
+    /// The same by all that are gone, one above the other, from a height on that is free; no farther than is `needed`, mm.
+    fn free(&self, over: &[Over], axial: bool, [mut free, needed]: [f64; 2]) -> f64 {
+        while free < needed {
+            let meets = over.iter().filter(|over| self.full - over.least <= free);
+            let reach = |over: &Over| self.reach(over, axial) + over.length;
+            let farther = meets.map(reach).fold(free, f64::max);
+            if farther <= free {
+                break;
+            }
+            free = farther;
+        }
+        free.min(self.thickens)
+    }
+}
+
+/// Whether a way goes along the tool axis, and how far up, mm.
+fn climb(from: &ToolPose, to: &ToolPose) -> (bool, f64) {
+    let way = to.tip - from.tip;
+    let climb = way.dot(&from.axis);
+    ((way - from.axis * climb).norm() <= lean(climb), climb)
+}
+
 /// Where a tool has been since it was changed.
 #[derive(Clone, Debug)]
 pub struct Been {
@@ -44,21 +89,23 @@ pub struct Been {
 }
 
 impl Been {
-    /// A tool of a profile, points [z, r] in mm, z from the tip, that has been nowhere.
+    /// A tool of a profile, points [z, r] in mm, z from the tip, that has been nowhere. One without points is nowhere thinner
+    /// than below.
     pub fn new(profile: &[[f64; 2]]) -> Self {
         let rises = profile.windows(2).all(|pair| pair[0][0] <= pair[1][0]);
-        let heights = profile.first().filter(|_| rises).map(|first| {
+        let first = profile.first().unwrap_or(&[0.0; 2]);
+        let heights = rises.then(|| {
             let widens = profile.windows(2).take_while(|pair| pair[0][1] <= pair[1][1]).count();
-            let [end, most] = profile[widens];
+            let [end, most] = *profile.get(widens).unwrap_or(first);
             let full = profile.iter().find(|point| point[1] >= most).unwrap_or(first);
-            let thicker = profile[widens..].iter().position(|point| point[1] > most);
+            let thicker = profile.iter().skip(widens).position(|point| point[1] > most);
             // Between two points it is a cone: it is thicker behind the first of them.
             let thickens = thicker.map_or(f64::INFINITY, |place| profile[widens + place - 1][0]);
             Heights {
                 full: full[0],
-                thins: if widens + 1 == profile.len() { f64::INFINITY } else { end },
+                thins: if widens + 1 >= profile.len() { f64::INFINITY } else { end },
                 thickens,
-                top: profile[profile.len() - 1][0],
+                top: profile.last().unwrap_or(first)[0],
                 widest: profile.iter().map(|point| point[1]).fold(0.0, f64::max),
             }
         });
@@ -80,40 +127,42 @@ impl Been {
         (self.gone, self.next) = (Vec::new(), 0);
     }
 
-    /// A straight way without turning that is free: it goes where it has been before, or above that along its axis, and what
-    /// sticks out above is nowhere in what may be left.
-    pub fn covers(&self, field: &mut Field, [from, to]: [ToolPose; 2]) -> bool {
-        let Some(heights) = self.heights else { return false };
-        let way = to.tip - from.tip;
-        let climb = way.dot(&from.axis);
-        let axial = (way - from.axis * climb).norm() <= SAME;
+    /// What has been gone straight along the same line as a way, above it or below.
+    fn over(&self, [from, to]: [ToolPose; 2]) -> Vec<Over> {
         let same = self.gone.iter().filter(|gone| (gone.axis - from.axis).norm() <= SAME);
-        let over: Vec<Over> = same.filter_map(|gone| gone.over([from.tip, to.tip])).collect();
-        // Heights are those above the lower end of an axial way, else above the tip on the way; how far up it is free of what
-        // a tool has touched that went below.
-        let reach = |over: &Over| heights.thins - if axial { over.least } else { over.most };
-        let below = over.iter().filter(|over| over.least >= -SAME);
-        let Some(mut free) = below.map(reach).reduce(f64::max) else { return false };
-        if free == f64::INFINITY {
+        same.filter_map(|gone| gone.over([from.tip, to.tip])).collect()
+    }
+
+    /// A straight way without turning is free of what of the tool is more than `height` above its tip, mm: the tool has been
+    /// there before, on ways above this one too.
+    pub fn covers_above(&self, height: f64, [from, to]: [ToolPose; 2]) -> bool {
+        let Some(heights) = self.heights else { return false };
+        let (axial, climb) = climb(&from, &to);
+        let needed = heights.top + if axial { libm::fabs(climb) } else { 0.0 };
+        heights.free(&self.over([from, to]), axial, [height, needed]) >= needed
+    }
+
+    /// A straight way without turning that is free: it goes where it has been before, or above that along its axis, and what
+    /// sticks out above is nowhere in what may be left, as far as that is known.
+    pub fn covers(&self, field: Option<&mut Field>, [from, to]: [ToolPose; 2]) -> bool {
+        let (axial, climb) = climb(&from, &to);
+        let over = self.over([from, to]);
+        let below = over.iter().filter(|over| over.least >= -lean(0.0));
+        if below.clone().any(|over| over.most <= over.length + lean(over.length)) {
             return true;
         }
+        let Some(heights) = self.heights else { return false };
+        let reach = |over: &Over| heights.reach(over, axial);
+        let Some(free) = below.map(reach).reduce(f64::max) else { return false };
         let needed = heights.top + if axial { libm::fabs(climb) } else { 0.0 };
-        loop {
-            let meets = over.iter().filter(|over| heights.full - over.least <= free);
-            let farther = meets.map(|over| reach(over) + over.length).fold(free, f64::max);
-            if farther <= free || free >= needed {
-                break;
-            }
-            free = farther;
-        }
-        free = free.min(heights.thickens);
+        let free = heights.free(&over, axial, [free, needed]);
         if free >= needed {
             return true;
         }
         let low = if climb < 0.0 { to.tip } else { from.tip };
         let ends = [free, needed].map(|height| low + from.axis * height);
         let rest = Convex::frustum(ends, from.axis, [heights.widest; 2]);
-        axial && field.apart(&[rest]).at_least > 0.0
+        axial && field.is_some_and(|field| field.apart(&[rest]).at_least > 0.0)
     }
 }
 
@@ -136,19 +185,20 @@ impl Gone {
         };
         let (rise, across) = split(self.way);
         let along = across.norm();
+        let axial = along <= lean(rise);
         let above = |tip: Vector3<f64>| {
             let (height, aside) = split(tip - self.from);
-            if along <= SAME {
-                return (aside.norm() <= SAME).then_some(height - rise.min(0.0));
+            if axial {
+                return (aside.norm() <= lean(height)).then_some(height - rise.min(0.0));
             }
             let share = aside.dot(&across) / (along * along);
-            let over = SAME / along;
+            let over = lean(0.0) / along;
             let beside = (aside - across * share).norm();
-            let is_over = (-over..=1.0 + over).contains(&share) && beside <= SAME;
+            let is_over = (-over..=1.0 + over).contains(&share) && beside <= lean(height);
             is_over.then_some(height - rise * share)
         };
         let [one, other] = [above(ends[0])?, above(ends[1])?];
-        let length = if along <= SAME { libm::fabs(rise) } else { 0.0 };
+        let length = if axial { libm::fabs(rise) } else { 0.0 };
         Some(Over { least: one.min(other), most: one.max(other), length })
     }
 }

@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
+use crate::chip::{Chip, Gauge};
 use crate::profile::{Frustum, Line, Run, ToolPose, extents, frusta, grown, hull, runs};
-use crate::rays::{Bound, Grid, Rays, Span, Stretch, common};
+use crate::rays::{Bound, Grid, Rays, Span, Stretch, common, within};
 use crate::sweep::Sweep;
 
 /// Prisms of all three directions together that a stock has if no resolution is said.
@@ -144,14 +145,15 @@ impl Field {
         for run in &cutter.inner {
             let extents = run.extents(pose);
             let line = |point, axis| run.inside(&Line::new(pose, point, axis));
-            removed += self.carve(&extents, &line);
+            removed += self.carve(&extents, &line, None);
         }
         removed
     }
 
     /// Takes away what a cutter certainly removes that goes straight without turning; what was left there.
-    pub fn remove_straight(&mut self, cutter: &Cutter, poses: [ToolPose; 2]) -> Volume {
+    pub fn remove_straight(&mut self, cutter: &Cutter, poses: [ToolPose; 2]) -> Chip {
         let [from, to] = poses;
+        let mut gauge = Gauge::new(poses);
         let way = to.tip - from.tip;
         let length = way.norm();
         let mut removed = Volume::default();
@@ -166,10 +168,11 @@ impl Field {
                 let end = ((place + 1) as f64 / parts + over).min(1.0);
                 let pose = ToolPose { tip: from.tip + way * start, ..from };
                 let sweep = Sweep { run, pose, way: way * (end - start) };
-                removed += self.carve(&sweep.extents(), &|point, axis| sweep.inside(point, axis));
+                let line = |point, axis| sweep.inside(point, axis);
+                removed += self.carve(&sweep.extents(), &line, Some(&mut gauge));
             }
         }
-        removed
+        Chip { volume: removed, engagement: gauge.engagement(self.grid.cell.norm()) }
     }
 
     /// Takes away what is inside of a convex body for certain; what was left of it.
@@ -177,6 +180,7 @@ impl Field {
         &mut self,
         extents: &[Vector3<f64>; 2],
         line: &dyn Fn(Vector3<f64>, usize) -> Option<Stretch>,
+        mut gauge: Option<&mut Gauge>,
     ) -> Volume {
         let Self { upper, lower, tiles, grid, .. } = self;
         let width = grid.counts[0].div_ceil(TILE);
@@ -187,6 +191,13 @@ impl Field {
                     tiles[place[1] / TILE * width + place[0] / TILE] = None;
                     // What another part of the same cut has removed was counted there.
                     length += common(left, lower.at(place), stretch);
+                    if let Some(gauge) = &mut gauge {
+                        for [low, high] in within(left, stretch) {
+                            let [x, y] = [0, 1].map(|axis| place[axis] as f64 * grid.cell[axis]);
+                            let low = Vector3::new(x, y, low);
+                            gauge.take(low, Vector3::new(x + grid.cell.x, y + grid.cell.y, high));
+                        }
+                    }
                 }
             };
             // That of the last, along Z.

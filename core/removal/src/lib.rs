@@ -26,6 +26,7 @@
 
 pub mod along;
 pub mod been;
+pub mod chip;
 pub mod compare;
 pub mod field;
 pub mod mesh;

@@ -11,6 +11,12 @@ use crate::rays::{Span, Stretch};
 /// Boxes that are no nearer than this share of the nearest found are not looked at.
 const CLOSE: f64 = 0.98;
 
+/// Prisms on each side of a point that are looked at for what is left for certain.
+const ABOUT: usize = 3;
+
+/// Planes that are remembered of a search: the walls of a slot, its floor, and more.
+const MOST_PLANES: usize = 6;
+
 /// A box along the axes, from corner to corner, mm.
 type Block = [Vector3<f64>; 2];
 
@@ -32,7 +38,8 @@ impl Field {
             spheres,
             best: nothing,
             passed: f64::INFINITY,
-            planes: None,
+            planes: Vec::new(),
+            next: 0,
             at: None,
         };
         // What was nearest the last time may be gone: a cell of it that is left is near all the same.
@@ -71,6 +78,27 @@ impl Field {
         let mut apart = search.best;
         apart.at_least = apart.at_least.min(search.passed).max(0.0);
         apart
+    }
+
+    /// A point that is left for certain in a body, both in the frame of the field, in the prisms about a point alone.
+    pub fn common_near(&self, pieces: &[Convex], point: Vector3<f64>) -> Option<Vector3<f64>> {
+        let cell = &self.grid.cell;
+        let counts = self.lower.counts();
+        let about = |axis: usize| {
+            let at = (point[axis] / cell[axis]).max(0.0) as usize;
+            at.saturating_sub(ABOUT)..(at + ABOUT + 1).min(counts[axis])
+        };
+        let places = about(1).flat_map(|row| about(0).map(move |column| [column, row]));
+        let lines = places.flat_map(|place| {
+            let [x, y] = [0, 1].map(|axis| (place[axis] as f64 + 0.5) * cell[axis]);
+            let ends = move |span: &Span| span.map(|end| Vector3::new(x, y, f64::from(end)));
+            self.lower.at(place).iter().map(ends)
+        });
+        let mut lines = lines.map(|ends| Convex::frustum(ends, Vector3::z(), [0.0; 2]));
+        lines.find_map(|line| {
+            let meets = |piece: &Convex| of_convex(piece, &line).at_most <= 0.0;
+            pieces.iter().any(meets).then(|| line.core.towards(point))
+        })
     }
 
     /// Looks at what may be left in a prism along Z.
@@ -152,8 +180,10 @@ struct Search<'a> {
     best: Apart,
     /// The least that is proven of what was not looked at, mm.
     passed: f64,
-    /// Across the planes between body and nearest box so far, and how far the body goes along it, mm.
-    planes: Option<(Vector3<f64>, f64)>,
+    /// Across planes between the body and boxes that were near, the latest, and how far the body goes along each, mm.
+    planes: Vec<(Vector3<f64>, f64)>,
+    /// The place of the one that is replaced next.
+    next: usize,
     /// The nearest box.
     at: Option<Block>,
 }
@@ -174,12 +204,25 @@ impl Search<'_> {
         bounds.fold(f64::INFINITY, f64::min)
     }
 
-    /// The same by the planes that hold the nearest apart.
+    /// The same by the planes that hold near ones apart.
     fn plane_bound(&self, block: &Block) -> f64 {
-        let Some((along, far)) = &self.planes else { return f64::NEG_INFINITY };
         let [low, high] = block;
-        let near = along.zip_zip_map(low, high, |along, low, high| (along * low).min(along * high));
-        near.sum() - far - ALLOWANCE
+        let bound = |(along, far): &(Vector3<f64>, f64)| {
+            let least = |along: f64, low: f64, high: f64| (along * low).min(along * high);
+            along.zip_zip_map(low, high, least).sum() - far - ALLOWANCE
+        };
+        self.planes.iter().map(bound).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Remembers the planes across a direction.
+    fn remember(&mut self, along: Vector3<f64>) {
+        let reach = |piece: &Convex| along.dot(&piece.core.support(along)) + piece.round;
+        let far = self.pieces.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
+        match self.planes.get_mut(self.next) {
+            Some(place) => *place = (along, far),
+            None => self.planes.push((along, far)),
+        }
+        self.next = (self.next + 1) % MOST_PLANES;
     }
 
     fn block(&mut self, block: &Block) {
@@ -196,16 +239,12 @@ impl Search<'_> {
             let found = of_convex(&self.pieces[place], &body);
             let nearer = found.at_most < self.best.at_most;
             let at_least = self.best.at_least.min(found.at_least);
+            if found.along != Vector3::zeros() {
+                self.remember(found.along);
+            }
             if nearer {
                 self.at = Some(*block);
                 self.best = found;
-                if found.along != Vector3::zeros() {
-                    let reach = |piece: &Convex| {
-                        found.along.dot(&piece.core.support(found.along)) + piece.round
-                    };
-                    let far = self.pieces.iter().map(reach).fold(f64::NEG_INFINITY, f64::max);
-                    self.planes = Some((found.along, far));
-                }
             }
             self.best.at_least = at_least;
         }

@@ -29,6 +29,9 @@ pub type Stretch = [f64; 2];
 /// Spans that a prism has at most, so that memory is bounded by the field and not by the program.
 const MOST_SPANS: usize = 32;
 
+/// Numbers are rounded by less than this, mm.
+const SLIVER: f64 = 1e-4;
+
 fn rounded_down(value: f64) -> f32 {
     let near = value as f32;
     if f64::from(near) > value { near.next_down() } else { near }
@@ -91,6 +94,15 @@ impl Bound {
             }
         }
     }
+}
+
+/// What of spans lies within a stretch, but for what rounding leaves.
+pub(crate) fn within(spans: &[Span], [from, to]: Stretch) -> impl Iterator<Item = Stretch> {
+    let cut = move |span: &Span| {
+        let [low, high] = span.map(f64::from);
+        [low.max(from), high.min(to)]
+    };
+    spans.iter().map(cut).filter(|[low, high]| high - low > SLIVER)
 }
 
 /// Length of what two rows of spans have in common within a stretch, mm.

@@ -1,5 +1,7 @@
 //! The stock while the program cuts it: cutter, shank and holder against what is left.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Rotation3, Vector3};
 use post_clearance::piece::Way;
 use post_clearance::placement::Placement;
@@ -18,6 +20,7 @@ use post_removal::profile::{ToolPose, between};
 
 use super::bodies::{ToolShape, closed_mesh, unusable};
 use super::pair_row::PairRow;
+use super::tool_cut::ToolCut;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg, Role};
 use crate::session::Session;
@@ -36,6 +39,8 @@ pub struct StockLeft {
     pub cell: Vector3<f64>,
     /// What it is against the part that is to become of it, places in the part frame.
     pub part: Option<Compared>,
+    /// What each tool takes of it.
+    pub cuts: Vec<ToolCut>,
     field: Field,
     /// The low corner of the field, part frame, mm.
     low: Vector3<f64>,
@@ -49,32 +54,48 @@ fn shifted(mut triangles: Vec<Triangle>, low: Vector3<f64>) -> Vec<Triangle> {
     triangles
 }
 
+/// A mesh of more pieces is held against what is left by what it is wrapped in.
+const MOST_PIECES: usize = 64;
+
 /// An STL file of what is left.
 const SOLID: Role = Role { what: "stock", remedy: "name another file with --stock-stl" };
 
 impl StockLeft {
     /// Writes the surface of what may be left as an STL file, binary, mm, part frame as the CL file has it. It is closed, and
-    /// as exact as a cell.
+    /// as exact as a cell; edges are bevelled by half of one.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn write_stl(&self, session: &Session, path: &PathArg) -> Result<(), Failure> {
         let mut files = AtomicFile::create(session, &[(SOLID, path)])?;
-        let mut count = 0u32;
-        self.field.surface(&mut |_| count += 1);
-        let mut head = [0u8; 84];
-        head[80..].copy_from_slice(&count.to_le_bytes());
         for file in &mut files {
-            let mut written = file.write_bytes(&head);
-            self.field.surface(&mut |corners| {
+            let mut written = Ok(());
+            self.facets(&mut |bytes| {
                 if written.is_ok() {
-                    written = file.write_bytes(&self.facet(corners));
+                    written = file.write_bytes(bytes);
                 }
             });
             written?;
         }
         AtomicFile::finish(session, files)?;
         Ok(())
+    }
+
+    /// The same, in memory.
+    pub(crate) fn stl(&self) -> Vec<u8> {
+        let mut stl = Vec::new();
+        self.facets(&mut |bytes| stl.extend_from_slice(bytes));
+        stl
+    }
+
+    /// The head and the triangles of the file.
+    fn facets(&self, take: &mut dyn FnMut(&[u8])) {
+        let mut count = 0u32;
+        self.field.surface(&mut |_| count += 1);
+        let mut head = [0u8; 84];
+        head[80..].copy_from_slice(&count.to_le_bytes());
+        take(&head);
+        self.field.surface(&mut |corners| take(&self.facet(corners)));
     }
 
     /// A triangle as binary STL has it: normal, corners, two bytes that say nothing.
@@ -103,26 +124,37 @@ pub(super) struct CutStock {
     before: Volume,
     been: Been,
     tool: Option<CuttingTool>,
+    /// Bodies besides the tool that move against it.
+    others: Vec<Held>,
+    cuts: BTreeMap<u32, ToolCut>,
     rows: Vec<PairRow>,
     distances: u64,
 }
 
 /// The tool in the spindle.
 struct CuttingTool {
+    number: u32,
     /// What it removes, and where that is; where no more than its radius is known, nothing for certain. None where not even
     /// that is known.
     cutter: Option<(Cutter, Mounted)>,
+    /// How far its edges go up from the tip, mm.
+    edge: f64,
     parts: Vec<Part>,
 }
 
-/// A part of a tool.
-struct Part {
-    kind: PartKind,
+/// A body that is held against what is left.
+struct Held {
     /// Place of its pair with the stock.
     row: usize,
     watched: Watched,
     /// What it keeps from the stock at feed and at rapid, mm.
     keep: [f64; 2],
+}
+
+/// A part of a tool.
+struct Part {
+    kind: PartKind,
+    held: Held,
     /// All of it, as what may remove where it touches.
     body: Cutter,
     mounted: Mounted,
@@ -192,14 +224,40 @@ impl CutStock {
         let frame = Placement { rotation: turn, shift: turn * low + machine.mount };
         let axes = machine.axes.iter().map(|axis| axis.joint).collect();
         let (before, been) = (field.volume(), Been::new(&[]));
-        let (rows, distances) = (Vec::new(), 0);
-        Some(Self { axes, field, frame, low, part, before, been, tool: None, rows, distances })
+        let (tool, others) = (None, Vec::new());
+        let (cuts, rows, distances) = (BTreeMap::new(), Vec::new(), 0);
+        Some(Self {
+            axes,
+            field,
+            frame,
+            low,
+            part,
+            before,
+            been,
+            tool,
+            others,
+            cuts,
+            rows,
+            distances,
+        })
     }
 
-    /// The pairs that are looked at here, and not by the proof of the whole stock.
-    pub fn looks(kinds: [BodyKind; 2]) -> bool {
-        kinds.contains(&BodyKind::Stock)
-            && (kinds.contains(&BodyKind::Holder) || kinds.contains(&BodyKind::Cutter))
+    /// Takes the bodies of a proof besides those of the tool that it holds against the stock.
+    pub fn hold(&mut self, proof: &Proof) {
+        let bodies = proof.bodies().iter().enumerate();
+        let Some((stock, _)) = bodies.clone().find(|(_, body)| body.kind == BodyKind::Stock) else {
+            return;
+        };
+        for (place, body) in bodies {
+            let pair = [stock.min(place), stock.max(place)];
+            let Some(rules) = proof.rules_between(pair) else { continue };
+            let sphere = body.shape.sphere();
+            let mounted = Mounted::on_link((&self.axes, body.link), self.frame, sphere);
+            let row = self.row(body.name.clone());
+            let watched = Watched::of_pieces(mounted, body.shape.held_by(MOST_PIECES));
+            let keep = [rules.keep, rules.rapid];
+            self.others.push(Held { row, watched, keep });
+        }
     }
 
     /// Another tool is in the spindle; pairs that `proof` leaves out are left out here.
@@ -234,7 +292,7 @@ impl CutStock {
             let row = self.row(format!("{what} T{number}"));
             let body = Cutter::vague(&profile);
             let watched = Watched::new(mounted.clone(), profile);
-            parts.push(Part { kind, row, watched, keep, body, mounted });
+            parts.push(Part { kind, held: Held { row, watched, keep }, body, mounted });
         }
         let cutter = Shape::turned(&edges, at_tip.tip, up).map(|shape| {
             let mounted = Mounted::new(&self.axes, self.frame, at_tip, shape.sphere());
@@ -242,7 +300,7 @@ impl CutStock {
             (cutter, mounted)
         });
         self.been = Been::new(&profile);
-        CuttingTool { cutter, parts }
+        CuttingTool { number, cutter, edge, parts }
     }
 
     fn row(&mut self, other: String) -> usize {
@@ -260,8 +318,8 @@ impl CutStock {
         self.been.clear();
     }
 
-    /// Takes a motion: what of the tool does not cut is held against what is left, and what cuts takes its part of it.
-    /// Whether the cutter was fed into the stock while the spindle stands.
+    /// Takes a motion: what does not cut is held against what is left, and what cuts takes its part of it. Whether the cutter was
+    /// fed into the stock while the spindle stands.
     pub fn motion(&mut self, against: &Against<'_>) -> bool {
         let spindle = &against.motion.state.spindle;
         if matches!(spindle, SpindleState::Surface { .. }) {
@@ -269,6 +327,16 @@ impl CutStock {
             self.forget();
             return false;
         }
+        let mut others = std::mem::take(&mut self.others);
+        for other in &mut others {
+            for way in against.ways {
+                if !self.stays_clear(other, against, way) {
+                    // What it hits may give way.
+                    self.field.doubt_all();
+                }
+            }
+        }
+        self.others = others;
         let Some(mut tool) = self.tool.take() else {
             // So may a tool of which nothing is known: at rapid one hits nothing that is said to be clear.
             if !against.rapid {
@@ -298,15 +366,22 @@ impl CutStock {
     ) -> bool {
         let mounted = tool.cutter.as_ref().map(|(_, mounted)| mounted);
         let straight = mounted.and_then(|mounted| mounted.straight(way));
+        // A shank no thicker than the edges goes where they have been on the same line, higher up.
+        let shank = cuts && tool.parts.iter().any(|part| part.kind == PartKind::Shank);
         // What it goes along again, or above, it has been in before.
-        let been = straight.is_some_and(|poses| self.been.covers(&mut self.field, poses));
+        let been = straight
+            .filter(|_| !cuts || shank)
+            .is_some_and(|poses| self.been.covers(Some(&mut self.field), poses));
+        let above = straight
+            .filter(|_| shank)
+            .is_some_and(|poses| self.been.covers_above(tool.edge, poses));
         // Behind edges that go down or sideways a shank comes into what they have cut.
         let sinks = straight.is_some_and(|[from, to]| (to.tip - from.tip).dot(&from.axis) <= 0.0);
         let follows = |part: &Part| cuts && sinks && part.kind == PartKind::Shank;
         let spared = |part: &Part| match part.kind {
             PartKind::Holder => false,
             PartKind::Cutter => cuts || been,
-            PartKind::Shank => been,
+            PartKind::Shank => been || above,
         };
         let (behind, ahead): (Vec<_>, Vec<_>) =
             tool.parts.iter_mut().filter(|part| !spared(part)).partition(|part| follows(part));
@@ -316,7 +391,9 @@ impl CutStock {
         }
         match &tool.cutter {
             Some((cutter, mounted)) if cuts => {
-                along::cut(&mut self.field, mounted, cutter, way);
+                let chip = along::cut(&mut self.field, mounted, cutter, way);
+                let own = self.cuts.entry(tool.number).or_insert_with(|| ToolCut::new(tool.number));
+                own.take(&chip, against.motion.line);
             }
             None if cuts => self.field.doubt_all(),
             _ => {}
@@ -326,7 +403,7 @@ impl CutStock {
         }
         // However much of it is known, the tool was there, and what was in its way is gone.
         if let Some((_, mounted)) = &tool.cutter
-            && (cuts || clear)
+            && (cuts || clear && !been)
         {
             match straight {
                 Some(poses) => self.been.add(poses),
@@ -341,16 +418,24 @@ impl CutStock {
 
     /// Holds a part of the tool against what is left on a way; whether it stays clear.
     fn holds(&mut self, part: &mut Part, against: &Against<'_>, way: &Way<'_>) -> bool {
-        let keep = part.keep[usize::from(against.rapid)];
-        let (nearest, distances) = (part.watched.nearest(), part.watched.distances());
-        let found = part.watched.along(&mut self.field, way, keep, WITHIN);
-        self.distances += part.watched.distances() - distances;
-        let row = &mut self.rows[part.row];
-        if part.watched.nearest() < nearest {
-            let line = against.motion.line;
-            if part.watched.nearest() < row.nearest.0 {
-                row.nearest = (part.watched.nearest(), line);
-            }
+        let clear = self.stays_clear(&mut part.held, against, way);
+        if !clear {
+            // What it hits may give way.
+            along::cut(&mut self.field, &part.mounted, &part.body, way);
+        }
+        clear
+    }
+
+    /// Holds a body against what is left on a way; whether it stays clear.
+    fn stays_clear(&mut self, held: &mut Held, against: &Against<'_>, way: &Way<'_>) -> bool {
+        let Held { row, watched, keep } = held;
+        let keep = keep[usize::from(against.rapid)];
+        let (nearest, distances) = (watched.nearest(), watched.distances());
+        let found = watched.along(&mut self.field, way, keep, WITHIN);
+        self.distances += watched.distances() - distances;
+        let row = &mut self.rows[*row];
+        if watched.nearest() < nearest.min(row.nearest.0) {
+            row.nearest = (watched.nearest(), against.motion.line);
         }
         let (verdict, place) = match found {
             Found::Clear(by) => {
@@ -371,8 +456,6 @@ impl CutStock {
             let line = against.motion.line;
             row.fault = Some(Fault { verdict, line, joints, at_most, keep, point });
         }
-        // What it hits may give way.
-        along::cut(&mut self.field, &part.mounted, &part.body, way);
         false
     }
 
@@ -389,6 +472,7 @@ impl CutStock {
             before: self.before,
             left: self.field.volume(),
             cell: self.field.cell(),
+            cuts: self.cuts.into_values().collect(),
             field: self.field,
             low: self.low,
         };

@@ -1,15 +1,16 @@
 //! Whether anything hits anything while an NC program runs.
 
-mod been;
 mod bodies;
 mod choice;
 mod left;
 mod names;
 mod of_job;
+mod outlines;
 mod pair_row;
 mod start;
 mod summary;
 pub mod text;
+mod tool_cut;
 mod watch;
 
 use std::path::{Path, PathBuf};
@@ -36,7 +37,8 @@ pub use left::StockLeft;
 pub use of_job::of_job;
 pub use pair_row::PairRow;
 pub use post_removal::compare::Farthest;
-pub use summary::{ClearanceSummary, PairSummary};
+pub use summary::{ClearanceSummary, CutSummary, PairSummary};
+pub use tool_cut::{LongestAt, ToolCut};
 pub use watch::Hearer;
 
 /// A program that is to be proven.
@@ -111,7 +113,11 @@ pub fn prove(
     let diameters = tools.filter_map(|tool| Some((tool.number, tool.diameter?))).collect();
     let cuts = Cuts { diameters, fastest: facts.fastest };
     let mut run = ProgramRun::new(control.program_with_rapids(name, text)?);
-    let stock = left::CutStock::new(machine, &mut findings);
+    let mut again = Vec::new();
+    let stock = left::CutStock::new(machine, &mut again);
+    // What is wrong with the body of the stock was said of it as a body.
+    again.retain(|finding| !findings.contains(finding));
+    findings.append(&mut again);
     let mut watch = ClearanceWatch::new(control, bodies, cuts, hear, stock);
     while let Some(done) = run.block() {
         for what in done.iter() {
@@ -195,6 +201,14 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
         let message = format!("nothing is proven of what has no body: {}", lacks.join(", "));
         let help =
             "[solids] names STL files of the machine, [fixture.NAME] and [stock] what is on it";
+        findings.push(Diagnostic::warning("clearance-body", message).help(help));
+    }
+    findings.extend(outlines::of_tools(machine));
+    if machine.stock.as_ref().is_some_and(|stock| stock.cut.is_none())
+        && machine.outlines.iter().any(|outline| !outline.cutter.is_empty())
+    {
+        let message = "the stock counts as it is before the first cut, whatever is cut of it";
+        let help = "cut = true under [stock] takes from it what the drawn cutters remove";
         findings.push(Diagnostic::warning("clearance-body", message).help(help));
     }
     let mut joints = Joints::default();

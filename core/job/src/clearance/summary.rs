@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::ClearanceFound;
+use super::{ClearanceFound, LongestAt, ToolCut};
 use crate::text::{at_least, number};
 
 /// What was proven of a program, as its summary tells it.
@@ -14,6 +14,39 @@ pub struct ClearanceSummary {
     pub pairs: Vec<PairSummary>,
     /// What has no body, and was not looked at.
     pub without_body: Vec<String>,
+    /// What each tool takes of a stock that is cut.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cuts: Vec<CutSummary>,
+}
+
+/// What a tool takes of the stock.
+#[derive(Clone, Debug, Serialize)]
+pub struct CutSummary {
+    /// Its number.
+    pub tool: u32,
+    /// How much of the stock it takes, mm³: no less and no more than this.
+    pub volume_mm3: [f64; 2],
+    /// Its straight cuts are no deeper, mm up from the tip.
+    pub depth_mm: Option<f64>,
+    /// Where they are deepest, a line of the program.
+    pub depth_line: Option<u64>,
+    /// Its straight cuts are no wider, mm across way and tool axis.
+    pub width_mm: Option<f64>,
+    /// Where they are widest.
+    pub width_line: Option<u64>,
+}
+
+impl CutSummary {
+    fn new(cut: &ToolCut) -> Self {
+        let known = |longest: &LongestAt| {
+            let known = Some(*longest).filter(|longest| longest.line > 0);
+            (known.map(|longest| longest.at_most), known.map(|longest| longest.line))
+        };
+        let ((depth_mm, depth_line), (width_mm, width_line)) =
+            (known(&cut.depth), known(&cut.width));
+        let volume_mm3 = [cut.volume.at_least, cut.volume.at_most];
+        Self { tool: cut.tool, volume_mm3, depth_mm, depth_line, width_mm, width_line }
+    }
 }
 
 /// What is known of two bodies along a program.
@@ -46,6 +79,7 @@ impl ClearanceFound {
             motions: self.motions,
             pairs: pairs.collect(),
             without_body: self.lacks.clone(),
+            cuts: self.left.iter().flat_map(|left| left.cuts.iter().map(CutSummary::new)).collect(),
         }
     }
 }

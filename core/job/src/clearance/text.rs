@@ -1,8 +1,27 @@
 //! The table of what was proven.
 
-use super::{ClearanceFound, Farthest, StockLeft};
+use super::{ClearanceFound, Farthest, LongestAt, StockLeft, ToolCut};
 use crate::text::{at_least, number};
 use crate::text_table::{NamedValues, TextTable};
+
+/// What each tool takes of the stock.
+fn cut_table(cuts: &[ToolCut]) -> TextTable {
+    let mut table = TextTable::headed(
+        1,
+        ["", "cut, mm³", "no deeper than, mm", "line", "no wider than, mm", "line"],
+    );
+    for ToolCut { tool, volume, depth, width } in cuts {
+        let taken = format!("{} to {}", number(volume.at_least, 0), number(volume.at_most, 0));
+        let longest = |LongestAt { at_most, line }: &LongestAt| match *line > 0 {
+            true => [number(*at_most, 3), line.to_string()],
+            false => ["-".to_owned(), "-".to_owned()],
+        };
+        let [deep, deepest] = longest(depth);
+        let [wide, widest] = longest(width);
+        table.row([format!("tool {tool}"), taken, deep, deepest, wide, widest]);
+    }
+    table
+}
 
 /// What was proven, as lines.
 pub fn text(found: &ClearanceFound) -> String {
@@ -35,6 +54,10 @@ pub fn text(found: &ClearanceFound) -> String {
         rows.row("without a body, not looked at", found.lacks.join(", "));
     }
     let mut text = rows.table();
+    if let Some(cuts) = found.left.as_ref().map(|left| &left.cuts).filter(|cuts| !cuts.is_empty()) {
+        text.push('\n');
+        text.push_str(&cut_table(cuts).text());
+    }
     if found.pairs.is_empty() {
         return text;
     }

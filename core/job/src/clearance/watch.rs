@@ -10,8 +10,9 @@ use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use post_readback::{
     BlockEffect, CycleKind, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState,
 };
+use post_removal::been::{Been, goes_alone};
+use post_removal::profile::ToolPose;
 
-use super::been::Been;
 use super::bodies::{ToolShape, of_tool};
 use super::left::{Against, CutStock};
 use super::pair_row::PairRow;
@@ -24,6 +25,9 @@ const FEED_PLACE: f64 = 0.5;
 
 /// A length in force may differ by so much from that of the tool, mm: wear, and what a measurement leaves.
 const WEAR: f64 = 0.5;
+
+/// A distance to keep that is no longer need not be said, mm: there is none.
+const LEAST_SAID: f64 = 1e-3;
 
 /// Hears of motions: the line, and how near any two bodies come on it, mm.
 pub type Hearer<'h> = dyn FnMut(u64, f64) + 'h;
@@ -38,8 +42,6 @@ pub(super) struct ClearanceWatch<'a, 'h> {
     stock: Option<CutStock>,
     /// The tool whose bodies are looked at, and its length, mm.
     tool: Option<(u32, Option<f64>)>,
-    /// The cutter is nowhere thinner than nearer to its tip.
-    widens: bool,
     /// Where the tool has been since it was changed: another one would have been there before.
     been: Been,
     /// Where the program begins.
@@ -66,7 +68,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         fixed: Vec<Body>,
         cuts: Cuts,
         hear: Option<&'a mut Hearer<'h>>,
-        stock: Option<CutStock>,
+        mut stock: Option<CutStock>,
     ) -> Self {
         let found = ClearanceFound {
             pairs: Vec::new(),
@@ -77,6 +79,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             left: None,
         };
         let proof = proof(&control.machine, fixed.clone());
+        stock.iter_mut().for_each(|stock| stock.hold(&proof));
         Self {
             told: hear.map(|hear| (hear, proof.clone())),
             proof,
@@ -85,8 +88,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             cuts,
             stock,
             tool: None,
-            widens: true,
-            been: Been::default(),
+            been: Been::new(&[]),
             start: Start::default(),
             turns_part: false,
             misled: None,
@@ -174,12 +176,12 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             ends: [&motion.from, &motion.to],
             independent: at_rapid && !together,
         };
-        let cuts = !rapid || self.been.covers(motion, way.independent, self.widens);
-        self.been.take(motion, way.independent);
+        let been = self.goes(motion, way.independent, rapid);
+        let cuts = been || !rapid;
         let lessens = self.stock.is_some();
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
-            if lessens && CutStock::looks(kinds) {
+            if lessens && kinds.contains(&BodyKind::Stock) {
                 return false;
             }
             let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
@@ -193,19 +195,22 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             }
             Known::Nothing => return,
         };
-        self.proof.take(&Move { way, rapid, line: motion.line }, looks);
-        if let Some((hear, proof)) = &mut self.told
-            && let Some(distance) = proof.closest(&Move { way, rapid, line: motion.line }, looks)
-        {
-            hear(motion.line, distance);
-        }
         // Where the control keeps the tip it may do so at rapid as well: the axes go another way then.
         let together = Way { independent: false, ..way };
         let twice = way.independent && motion.turns() && motion.way != Interpolation::Axes;
-        if twice {
-            self.proof.take(&Move { way: together, rapid, line: motion.line }, looks);
-        }
         let ways = &[way, together][..1 + usize::from(twice)];
+        let line = motion.line;
+        let mut nearest = None;
+        for way in ways.iter().copied() {
+            self.proof.take(&Move { way, rapid, line }, looks);
+            if let Some((_, proof)) = &mut self.told {
+                let distance = proof.closest(&Move { way, rapid, line }, looks);
+                nearest = distance.into_iter().chain(nearest).reduce(f64::min);
+            }
+        }
+        if let (Some(distance), Some((hear, _))) = (nearest, &mut self.told) {
+            hear(line, distance);
+        }
         let against = Against { motion, ways, rapid };
         if self.stock.as_mut().is_some_and(|stock| stock.motion(&against)) {
             let message = "a cutter is fed into the stock while the spindle stands, or may stand: nothing is cut for certain";
@@ -215,6 +220,23 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 self.faults.push((motion.line, message.to_owned(), help));
             }
         }
+    }
+
+    /// Takes where the tool goes. Whether it goes at `rapid` where it has been, or above that along its axis: what is drawn as the
+    /// stock is not there any more.
+    fn goes(&mut self, motion: &Motion, independent: bool, rapid: bool) -> bool {
+        let [from, to] = [&motion.from, &motion.to];
+        let poses = [from, to].map(|at| ToolPose { tip: at.pose.tip, axis: at.pose.axis });
+        let bends = motion.turns() || motion.way.is_curved();
+        if bends || independent && !goes_alone(&from.joints, &to.joints) {
+            self.been.add([poses[1]; 2]);
+            return false;
+        }
+        let covers = rapid && self.been.covers(None, poses);
+        if !covers {
+            self.been.add(poses);
+        }
+        covers
     }
 
     /// Says where a cut is led by another length than the tool has.
@@ -258,11 +280,11 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             return;
         }
         self.tool = Some((number, length));
-        self.been = Been::default();
         self.put_down();
         let machine = &self.control.machine;
         let mut bodies = self.fixed.clone();
         let Some(length) = length else {
+            self.been = Been::new(&[]);
             let message =
                 format!("how long tool {number} is is not known: nothing is proven of it");
             let help = "[tools] of the machine file, --offsets or --tool-length";
@@ -280,8 +302,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             }
         }
         let profile = outline.map_or(&[][..], |outline| &outline.cutter);
-        self.widens =
-            profile.windows(2).all(|pair| pair[0][0] <= pair[1][0] && pair[0][1] <= pair[1][1]);
+        self.been = Been::new(profile);
         self.begin(bodies, Some(&tool), motion.line);
     }
 
@@ -404,6 +425,10 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
 /// What is wrong with a pair of bodies.
 fn told(machine: &Machine, row: &PairRow, fault: &Fault) -> String {
     let [one, other] = &row.names;
+    let kept = match fault.keep > LEAST_SAID {
+        true => format!(", and {} mm are to be kept", Short(fault.keep)),
+        false => String::new(),
+    };
     let mut message = match fault.verdict {
         Verdict::Hits => format!("{one} hits {other}"),
         Verdict::Near => format!(
@@ -413,9 +438,9 @@ fn told(machine: &Machine, row: &PairRow, fault: &Fault) -> String {
         ),
         Verdict::Unproven if fault.at_most.is_finite() => {
             format!(
-                "that {one} stays clear of {other} is not proven: {} mm are found",
+                "that {one} stays clear of {other} is not proven: where it was looked at last they are no more than {} mm apart",
                 Short(fault.at_most)
-            )
+            ) + &kept
         }
         Verdict::Unproven => format!(
             "that {one} stays clear of {other} is not proven: how the axes go on the way is not known"

@@ -10,7 +10,7 @@ use post_readback::verify::Verification;
 use post_report::meta::{AxisUsed, Maximum, Names, VerdictMeta};
 
 use super::{BlockRows, ClearanceRows, PartText, Parts, PredictedParts};
-use crate::clearance::ClearanceSummary;
+use crate::clearance::{ClearanceSummary, StockLeft};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, PathArg};
 use crate::predict::Prediction;
@@ -32,6 +32,8 @@ pub struct PostPage<'a> {
     pub verification: Option<&'a Verification>,
     /// What was proven of it: nothing hits anything.
     pub clearance: Option<ClearanceSummary>,
+    /// What is left of a stock that it cuts.
+    pub left: Option<&'a StockLeft>,
     /// What is predicted of it.
     pub prediction: Option<&'a Prediction>,
     /// What the user should know.
@@ -93,7 +95,7 @@ impl PostPage<'_> {
                 meta.verdict.word = "Within tolerance, predicted beyond a limit".to_owned();
             }
         }
-        let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
+        let mut parts = Parts::with_left(self.session, self.machine, &mut meta, self.left)?;
         if let (Some(near), Some(proven)) = (near, &self.clearance) {
             near.finish(proven, self.machine.clearance.keep, &mut parts, &mut meta)?;
         }

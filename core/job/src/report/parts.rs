@@ -13,7 +13,7 @@ use post_report::table::TableWriter;
 use post_report::text::TextWriter;
 
 use super::solids;
-use crate::clearance::ClearanceSummary;
+use crate::clearance::{ClearanceSummary, StockLeft};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, FileFault, Scratch};
 use crate::session::Session;
@@ -78,8 +78,21 @@ impl Parts {
     /// # Errors
     /// They cannot be kept.
     pub fn of(session: &Session, machine: &Machine, meta: &mut Meta) -> Result<Self, Failure> {
+        Self::with_left(session, machine, meta, None)
+    }
+
+    /// The same with what is `left` of the stock.
+    ///
+    /// # Errors
+    /// They cannot be kept.
+    pub fn with_left(
+        session: &Session,
+        machine: &Machine,
+        meta: &mut Meta,
+        left: Option<&StockLeft>,
+    ) -> Result<Self, Failure> {
         let mut parts = Self::default();
-        let faults = solids::add(machine, meta, &mut parts)?;
+        let faults = solids::add(machine, left, meta, &mut parts)?;
         session.findings(&faults);
         // Their places are lines of the machine file, which the page does not show.
         let told = faults.into_iter().map(|fault| fault.at(None));

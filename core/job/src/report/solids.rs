@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Cursor};
 
 use nalgebra::Vector3;
 use post_clearance::placement::Placement;
@@ -14,7 +14,7 @@ use post_report::table::{TableColumn, TableWriter};
 
 use super::given_bodies;
 use super::parts::{Parts, fault};
-use crate::clearance;
+use crate::clearance::{self, StockLeft};
 use crate::failure::Failure;
 
 /// A body that is drawn as a machine file describes it.
@@ -117,12 +117,13 @@ fn same(one: &[DrawnBody<'_>], other: &[DrawnBody<'_>]) -> bool {
 /// Adds the shapes of a machine and its heads to the parts of a report; what cannot be shown comes back.
 ///
 /// A row of the table is a corner: `corners` of them are a triangle (3) or an edge (2) of `body`, in the `set` of those that
-/// the machine or a head has; mm, machine frame, every axis at zero.
+/// the machine or a head has; mm, machine frame, every axis at zero. What is `left` of the stock hangs on the part.
 ///
 /// # Errors
 /// They cannot be kept.
 pub(super) fn add(
     machine: &Machine,
+    left: Option<&StockLeft>,
     meta: &mut Meta,
     parts: &mut Parts,
 ) -> Result<Vec<Diagnostic>, Failure> {
@@ -158,10 +159,21 @@ pub(super) fn add(
             }
         }
     }
+    for [x, y, z] in left.and_then(|left| what_is_left(machine, left)).unwrap_or_default() {
+        table.row(&[0.0, 3.0, 0.0, x, y, z]).map_err(fault)?;
+    }
     if table.rows() > 0 {
         parts.table(table)?;
     }
     Ok(faults)
+}
+
+/// Corners of triangles of what is left of a stock, few enough for a frame, mm, machine frame; none where nothing is.
+fn what_is_left(machine: &Machine, left: &StockLeft) -> Option<Vec<Vertex>> {
+    let mut solid = DrawnSolid::read(&mut Cursor::new(left.stl()), MOST_TRIANGLES / 2).ok()?;
+    let stock = clearance::of_stock(machine);
+    let corners = solid.triangles.iter_mut().flatten();
+    Some(corners.map(|corner| stock.point(Vector3::from(*corner)).into()).collect())
 }
 
 /// The shapes that can be read, few enough for a frame; and why others cannot.

@@ -123,3 +123,36 @@ fn faces_across_the_axes_are_exact() {
     assert!((apart.at_least - 1.21).abs() < 0.03, "{apart:?}");
     assert_eq!(field.apart(&body(19.0, floor + 1.0)).at_least, 0.0);
 }
+
+/// How far a cut goes into what is left: the true depth and width, or more by what cells do not tell.
+#[test]
+fn a_cut_engages_by_its_width_and_its_depth() {
+    let cell = 0.4;
+    for turn in [0.0, 0.3, 1.2] {
+        for [wide, deep] in [[8.0, 3.0], [1.5, 6.0], [4.0, 0.7]] {
+            let mut field = Field::block(Vector3::new(40.0, 40.0, 20.0), cell);
+            let cutter = Cutter::new(&[[0.0, 4.0], [30.0, 4.0]]);
+            let (sine, cosine) = libm::sincos(turn);
+            let along = Vector3::new(cosine, sine, 0.0);
+            let aside = Vector3::new(-sine, cosine, 0.0);
+            let line = |off: f64, floor: f64| {
+                let middle = Vector3::new(20.0, 20.0, floor) + aside * off;
+                [-12.0, 12.0].map(|share| {
+                    let [x, y, z] = (middle + along * share).into();
+                    upright(x, y, z)
+                })
+            };
+            // What is beside is cut before.
+            if wide < 8.0 {
+                field.remove_straight(&cutter, line(-wide, 20.0 - deep));
+            }
+            let found = field.remove_straight(&cutter, line(0.0, 20.0 - deep)).engagement.unwrap();
+            let (width, more) = (found.width.unwrap(), 5.0 * cell);
+            assert!((deep..deep + more).contains(&found.depth), "{turn} {wide} {deep} {found:?}");
+            // The round end of the cut before leaves some beside it.
+            assert!(width >= wide && width <= 8.0 + more, "{turn} {wide} {deep} {found:?}");
+            let again = field.remove_straight(&cutter, line(0.0, 20.0 - deep));
+            assert!(again.engagement.is_none(), "{again:?}");
+        }
+    }
+}

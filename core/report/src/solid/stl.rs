@@ -44,7 +44,7 @@ impl fmt::Display for StlFault {
             Self::Io(error) => write!(out, "{error}"),
             Self::Cut => write!(out, "it was cut off: it ends before `endsolid`"),
             Self::TooLong(bytes) => {
-                write!(out, "it has {bytes} bytes; at most {MOST_BYTES} are read for a picture")
+                write!(out, "it has {bytes} bytes; at most {MOST_BYTES} are read")
             }
             Self::Empty => write!(
                 out,

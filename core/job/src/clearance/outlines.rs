@@ -1,0 +1,59 @@
+//! Whether holder, cutter and length of a tool fit together.
+
+use post_machine::check::number as decimals;
+use post_machine::description::{Machine, ToolOutline};
+use post_machine::diagnostic::Diagnostic;
+
+/// Ends that are no farther apart than this meet, mm.
+const MEET: f64 = 1e-6;
+
+/// What does not fit of the tools of a machine.
+pub(super) fn of_tools(machine: &Machine) -> Vec<Diagnostic> {
+    machine.outlines.iter().flat_map(|outline| of_tool(machine, outline)).collect()
+}
+
+fn of_tool(machine: &Machine, outline: &ToolOutline) -> Vec<Diagnostic> {
+    let ToolOutline { number, holder, cutter, edge } = outline;
+    let top = |points: &[[f64; 2]]| points.iter().map(|[z, _]| *z).reduce(f64::max);
+    let length = machine.tools.iter().find(|(known, _)| known == number).map(|(_, length)| *length);
+    let (holder, cutter) = (top(holder), top(cutter));
+    let mm = |value: f64| format!("{} mm", decimals(value, 3));
+    let mut findings = Vec::new();
+    let mut tell = |message: String, help: &str| {
+        findings.push(Diagnostic::warning("clearance-body", message).help(help));
+    };
+    if let (Some(holder), Some(length)) = (holder, length)
+        && holder > length - MEET
+    {
+        let (reach, long) = (mm(holder), mm(length));
+        tell(
+            format!(
+                "the holder of tool {number} goes {reach} down, and the tool is {long} long: it ends at its tip or beyond"
+            ),
+            "z of a holder counts from the gauge point towards the tip, length from the gauge point to the tip",
+        );
+    }
+    if let (Some(edge), Some(cutter)) = (edge, cutter)
+        && *edge > cutter + MEET
+    {
+        let (edge, cutter) = (mm(*edge), mm(cutter));
+        tell(
+            format!(
+                "edge of tool {number} is {edge} above its tip, and its cutter ends at {cutter}: nothing of it is shank"
+            ),
+            "z of the cutter and edge count from the tip; the shank belongs to the cutter's points",
+        );
+    }
+    if let (Some(holder), Some(cutter), Some(length)) = (holder, cutter, length)
+        && length - holder - cutter > MEET
+    {
+        let gap = mm(length - holder - cutter);
+        tell(
+            format!(
+                "between cutter and holder of tool {number} nothing is drawn on {gap}: nothing is proven of what is there"
+            ),
+            "points of the cutter up to where the holder begins: length less the holder's last z",
+        );
+    }
+    findings
+}

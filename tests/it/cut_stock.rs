@@ -91,6 +91,87 @@ fn what_is_left_is_hit_at_rapid_by_holders_and_by_shanks() {
     assert_contains(&said, &["while the spindle stands", "stock hits cutter T1"]);
 }
 
+/// A slot of 12 mm, cut along two lines, and a rapid between these along its middle: the walls come no nearer on the way, and
+/// the whole of it is looked at in few steps, however fine the cells are.
+#[test]
+fn a_rapid_in_a_narrow_slot_is_proven_in_few_steps() {
+    let slot = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT1 M6\nS3000 M3\nG54\nG0 X-50. Y-1.\nG43 H1 Z5.\n\
+                G0 Z-6.\nG1 X50. F800.\nY1.\nX-50.\nG0 X-50. Y0.2\nG0 Z-5.5\nG0 X50.\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n";
+    let mine = machine("cut = true\nresolution = 0.15", END_MILL);
+    let (_, said, clear) = proven(&mine, slot, &[]);
+    assert!(clear, "{said}");
+    let computed = said.lines().find_map(|line| line.strip_prefix("distances computed")).unwrap();
+    assert!(computed.trim().parse::<u32>().unwrap() < 100, "{said}");
+    // Into a wall of it: where it does is found in few steps too.
+    let (_, said, clear) = proven(&mine, &slot.replace("G0 X50.", "G0 X50. Y6."), &[]);
+    assert!(!clear);
+    let computed = said.lines().find_map(|line| line.strip_prefix("distances computed")).unwrap();
+    assert!(computed.trim().parse::<u32>().unwrap() < 120, "{said}");
+}
+
+/// A hole along a tool axis that leans, with the control keeping the tip: the words of the way out lead beside its line by what
+/// they are printed to, and no farther.
+#[test]
+fn a_tool_is_drawn_out_along_an_axis_that_leans() {
+    let mine = "extends = \"ac-trunnion\"\nname = \"mine\"\n[control]\ntcp = \"control\"\n\
+                [clearance]\nrapid_axes = \"together\"\n\
+                [stock]\nblock = [[-50, -30, 0], [50, 30, 28]]\ncut = true\n\
+                [tools.3]\nlength = 100\ncutter = [[0, 5], [60, 5]]\n";
+    let drill = "%\nO1\nG21\nG17 G40 G80 G90 G94\nG53 G0 Z0.\nT3 M6\nS3000 M3\nG54\nG0 A21.716 C18.925\n\
+                 G43.4 H3 X31.211 Y-86.028 Z228.831\nX8.017 Y-18.381 Z49.274\n\
+                 G94 G1 X5.617 Y-11.381 Z30.694 F500.\nX3.217 Y-4.381 Z12.113\nG0 X6.277 Y-13.306 Z35.803\n\
+                 X10.417 Y-25.381 Z67.855\nG53 G0 Z0.\nG49\nM30\n%\n";
+    for mine in [mine.to_owned(), mine.replace("cut = true\n", "")] {
+        let run = |program: &str| {
+            let folder = tempfile::tempdir().unwrap();
+            fs::write(folder.path().join("mine.toml"), &mine).unwrap();
+            fs::write(folder.path().join("part.nc"), program).unwrap();
+            post_in(folder.path(), &["clearance", "part.nc", "-m", "mine.toml"])
+        };
+        let out = run(drill);
+        assert_eq!(out.code, 0, "{}{}", out.out, out.err);
+        let beside = run(&drill.replace("G0 X6.277", "G0 X6.317"));
+        assert_eq!(beside.code, 1, "{}{}", beside.out, beside.err);
+        assert_contains(&beside.err, &["cutter T3"]);
+    }
+}
+
+/// Layers are cut along the same lines: a shank no thicker than the edges goes where these have been.
+#[test]
+fn a_shank_may_be_where_edges_were_on_the_same_line() {
+    let straight = "cutter = [[0, 5], [40, 5]]\nedge = 7";
+    let (_, said, clear) = proven(&machine("cut = true", straight), &program(""), &[]);
+    assert!(clear, "{said}");
+    let thick = "cutter = [[0, 5], [7, 5], [7, 5.2], [40, 5.2]]\nedge = 7";
+    let (_, said, clear) = proven(&machine("cut = true", thick), &program(""), &[]);
+    assert!(!clear);
+    assert_contains(&said, &["of shank T1"]);
+}
+
+/// A ring about the nose of the spindle, 10 mm above the tip of the second tool.
+#[test]
+fn other_bodies_are_held_against_what_is_left() {
+    let ring = "[fixture.ring]\non = \"t\"\ncylinder = [[0, 0, 530], [0, 0, 600]]\nradius = 8\n";
+    let with = |stock: &str| {
+        let mine = machine(stock, END_MILL).replace("[tools.1]", &format!("{ring}[tools.1]"));
+        mine.replace("[tools.2]\nlength = 100", "[tools.2]\nlength = 80")
+    };
+    let dive = |more: &str| {
+        program(&format!(
+            "G53 G0 Z20.\nT2 M6\nS3000 M3\nG54\nG0 X0. Y0.\nG43 H2 Z5.\nG0 Z-20.\n{more}"
+        ))
+    };
+    let (_, said, clear) = proven(&with("cut = true"), &dive(""), &[]);
+    assert!(clear, "{said}");
+    assert_contains(&said, &["stock  ring"]);
+    let (_, said, clear) = proven(&with("cut = true"), &dive("G0 X20.\n"), &[]);
+    assert!(!clear);
+    assert_contains(&said, &["stock hits ring"]);
+    let (_, said, clear) = proven(&with(""), &dive(""), &[]);
+    assert!(!clear);
+    assert_contains(&said, &["stock hits ring"]);
+}
+
 /// What a tool of no more than a radius cuts is not known, and is said.
 #[test]
 fn a_tool_that_is_not_drawn_removes_nothing() {

@@ -116,12 +116,9 @@ impl Shape {
         self.nodes.first().map_or((Vector3::zeros(), 0.0), |root| (root.centre, root.radius))
     }
 
-    /// Convex pieces that hold all of it: its own, or what a mesh of more than `most` is wrapped in.
-    pub fn held_by(&self, most: usize) -> Vec<Convex> {
-        match &self.cloud {
-            Some(cloud) if self.pieces.len() > most => vec![Convex::hull(cloud.clone())],
-            _ => self.pieces.clone(),
-        }
+    /// Its convex pieces; of a mesh they are its parts that are convex, and the triangles of others.
+    pub fn convex(&self) -> &[Convex] {
+        &self.pieces
     }
 
     /// What is wrong with its mesh.

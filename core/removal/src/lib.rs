@@ -5,6 +5,7 @@
 //! | [`profile`] | a tool as a body of revolution, and where a line is inside of it |
 //! | [`rays`] | what is left along the prisms of a grid in one direction |
 //! | [`field`] | prisms along X, Y and Z: what may be left, and what certainly is |
+//! | [`chip`] | what a cut takes, and how deep and wide it goes |
 //! | [`mesh`] | a stock from a closed mesh |
 //! | [`near`] | how far a body is from what may be left |
 //! | [`surface`] | the surface of what may be left, as triangles |

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Rotation3, Vector3};
 use post_clearance::piece::Way;
 use post_clearance::placement::Placement;
-use post_clearance::proof::{BodyKind, Fault, Proof, Verdict};
+use post_clearance::proof::{Body, BodyKind, Fault, Proof, Verdict};
 use post_clearance::shape::Shape;
 use post_machine::description::{GivenShape, Machine};
 use post_machine::diagnostic::Diagnostic;
@@ -54,7 +54,7 @@ fn shifted(mut triangles: Vec<Triangle>, low: Vector3<f64>) -> Vec<Triangle> {
     triangles
 }
 
-/// A mesh of more pieces is held against what is left by what it is wrapped in.
+/// A body of more pieces is held against the stock before the first cut.
 const MOST_PIECES: usize = 64;
 
 /// An STL file of what is left.
@@ -242,19 +242,25 @@ impl CutStock {
         })
     }
 
+    /// A body is held against what is left here, and not by the proof against the whole stock.
+    pub fn holds_left(body: &Body) -> bool {
+        let tool = matches!(body.kind, BodyKind::Holder | BodyKind::Cutter);
+        tool || body.shape.pieces() <= MOST_PIECES
+    }
+
     /// Takes the bodies of a proof besides those of the tool that it holds against the stock.
     pub fn hold(&mut self, proof: &Proof) {
         let bodies = proof.bodies().iter().enumerate();
         let Some((stock, _)) = bodies.clone().find(|(_, body)| body.kind == BodyKind::Stock) else {
             return;
         };
-        for (place, body) in bodies {
+        for (place, body) in bodies.filter(|(_, body)| Self::holds_left(body)) {
             let pair = [stock.min(place), stock.max(place)];
             let Some(rules) = proof.rules_between(pair) else { continue };
             let sphere = body.shape.sphere();
             let mounted = Mounted::on_link((&self.axes, body.link), self.frame, sphere);
             let row = self.row(body.name.clone());
-            let watched = Watched::of_pieces(mounted, body.shape.held_by(MOST_PIECES));
+            let watched = Watched::of_pieces(mounted, body.shape.convex().to_vec());
             let keep = [rules.keep, rules.rapid];
             self.others.push(Held { row, watched, keep });
         }

@@ -181,7 +181,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         let lessens = self.stock.is_some();
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
-            if lessens && kinds.contains(&BodyKind::Stock) {
+            let beside = if one.kind == BodyKind::Stock { other } else { one };
+            if lessens && kinds.contains(&BodyKind::Stock) && CutStock::holds_left(beside) {
                 return false;
             }
             let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);

@@ -164,7 +164,7 @@ fn other_bodies_are_held_against_what_is_left() {
     let (_, said, clear) = proven(&with("cut = true"), &dive(""), &[]);
     assert!(clear, "{said}");
     assert_contains(&said, &["stock  ring"]);
-    let (_, said, clear) = proven(&with("cut = true"), &dive("G0 X20.\n"), &[]);
+    let (_, said, clear) = proven(&with("cut = true"), &dive("G0 X26.\n"), &[]);
     assert!(!clear);
     assert_contains(&said, &["stock hits ring"]);
     let (_, said, clear) = proven(&with(""), &dive(""), &[]);

@@ -255,7 +255,7 @@ impl Watched {
                     None => {
                         let pieces: Vec<_> =
                             self.pieces.iter().map(|piece| piece.placed(&at)).collect();
-                        field.common_near(&pieces, apart.point)
+                        field.common_of(&pieces)
                     }
                 });
                 return match common.flatten() {

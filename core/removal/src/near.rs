@@ -6,13 +6,13 @@ use post_clearance::convex::Convex;
 use post_clearance::distance::{Apart, of_convex};
 
 use crate::field::{Field, TILE};
-use crate::rays::{Span, Stretch};
+use crate::rays::{Span, Stretch, within};
 
 /// Boxes that are no nearer than this share of the nearest found are not looked at.
 const CLOSE: f64 = 0.98;
 
-/// Prisms on each side of a point that are looked at for what is left for certain.
-const ABOUT: usize = 3;
+/// Lines that are looked at for what is left for certain, in each direction.
+const MOST_LINES: usize = 48;
 
 /// Planes that are remembered of a search: the walls of a slot, its floor, and more.
 const MOST_PLANES: usize = 6;
@@ -80,24 +80,28 @@ impl Field {
         apart
     }
 
-    /// A point that is left for certain in a body, both in the frame of the field, in the prisms about a point alone.
-    pub fn common_near(&self, pieces: &[Convex], point: Vector3<f64>) -> Option<Vector3<f64>> {
-        let cell = &self.grid.cell;
-        let counts = self.lower.counts();
-        let about = |axis: usize| {
-            let at = (point[axis] / cell[axis]).max(0.0) as usize;
-            at.saturating_sub(ABOUT)..(at + ABOUT + 1).min(counts[axis])
-        };
-        let places = about(1).flat_map(|row| about(0).map(move |column| [column, row]));
-        let lines = places.flat_map(|place| {
-            let [x, y] = [0, 1].map(|axis| (place[axis] as f64 + 0.5) * cell[axis]);
-            let ends = move |span: &Span| span.map(|end| Vector3::new(x, y, f64::from(end)));
-            self.lower.at(place).iter().map(ends)
-        });
-        let mut lines = lines.map(|ends| Convex::frustum(ends, Vector3::z(), [0.0; 2]));
-        lines.find_map(|line| {
-            let meets = |piece: &Convex| of_convex(piece, &line).at_most <= 0.0;
-            pieces.iter().any(meets).then(|| line.core.towards(point))
+    /// A point that is left for certain in a body, both in the frame of the field, on a line through the middle of a prism: of
+    /// many no more than [`MOST_LINES`] in each direction are looked at.
+    pub fn common_of(&self, pieces: &[Convex]) -> Option<Vector3<f64>> {
+        pieces.iter().find_map(|piece| {
+            let [low, high] = piece.extents();
+            let prisms = |axis: usize| {
+                let count = self.lower.counts()[axis];
+                let [from, to] = [low, high].map(|end| end[axis] / self.grid.cell[axis]);
+                let prisms = from.max(0.0) as usize..(libm::ceil(to).max(0.0) as usize).min(count);
+                let step = prisms.len().div_ceil(MOST_LINES).max(1);
+                prisms.step_by(step)
+            };
+            let mut places = prisms(1).flat_map(|row| prisms(0).map(move |column| [column, row]));
+            places.find_map(|place| {
+                let [x, y] = [0, 1].map(|axis| (place[axis] as f64 + 0.5) * self.grid.cell[axis]);
+                within(self.lower.at(place), [low.z, high.z]).find_map(|ends| {
+                    let ends = ends.map(|z| Vector3::new(x, y, z));
+                    let line = Convex::frustum(ends, Vector3::z(), [0.0; 2]);
+                    let meets = of_convex(piece, &line).at_most <= 0.0;
+                    meets.then(|| line.core.towards(piece.core.centre()))
+                })
+            })
         })
     }
 

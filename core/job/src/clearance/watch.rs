@@ -8,7 +8,7 @@ use post_machine::check::number as decimals;
 use post_machine::description::{Machine, RapidAxes};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use post_readback::{
-    BlockEffect, CycleKind, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState,
+    BlockEffect, CycleKind, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState, Stance,
 };
 use post_removal::been::{Been, goes_alone};
 use post_removal::profile::ToolPose;
@@ -176,7 +176,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             ends: [&motion.from, &motion.to],
             independent: at_rapid && !together,
         };
-        let been = self.goes(motion, way.independent, rapid);
+        let poses = goes(motion, way.independent);
+        let been = rapid && poses.is_some_and(|poses| self.been.covers(None, poses));
         let cuts = been || !rapid;
         let lessens = self.stock.is_some();
         let looks = |one: &Body, other: &Body| {
@@ -188,7 +189,14 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
             !(touches && cuts)
         };
-        let way = match self.start.knows(&self.control.machine, motion) {
+        let known = self.start.knows(&self.control.machine, motion);
+        // Of what is not looked at it is not known what was there.
+        match (&known, poses) {
+            (Known::Way, Some(poses)) if !been => self.been.add(poses),
+            (Known::Way | Known::End, _) => self.been.add([at(&motion.to); 2]),
+            (Known::Nothing, _) => {}
+        }
+        let way = match known {
             Known::Way => way,
             Known::End => {
                 let ends = [&motion.to; 2];
@@ -221,23 +229,6 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 self.faults.push((motion.line, message.to_owned(), help));
             }
         }
-    }
-
-    /// Takes where the tool goes. Whether it goes at `rapid` where it has been, or above that along its axis: what is drawn as the
-    /// stock is not there any more.
-    fn goes(&mut self, motion: &Motion, independent: bool, rapid: bool) -> bool {
-        let [from, to] = [&motion.from, &motion.to];
-        let poses = [from, to].map(|at| ToolPose { tip: at.pose.tip, axis: at.pose.axis });
-        let bends = motion.turns() || motion.way.is_curved();
-        if bends || independent && !goes_alone(&from.joints, &to.joints) {
-            self.been.add([poses[1]; 2]);
-            return false;
-        }
-        let covers = rapid && self.been.covers(None, poses);
-        if !covers {
-            self.been.add(poses);
-        }
-        covers
     }
 
     /// Says where a cut is led by another length than the tool has.
@@ -421,6 +412,19 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
         found
     }
+}
+
+/// Where a tool stands, part frame.
+fn at(stance: &Stance) -> ToolPose {
+    ToolPose { tip: stance.pose.tip, axis: stance.pose.axis }
+}
+
+/// Both ends of a motion that goes straight and does not turn; of axes that need not arrive together one goes alone.
+fn goes(motion: &Motion, independent: bool) -> Option<[ToolPose; 2]> {
+    let [from, to] = [&motion.from, &motion.to];
+    let bends = motion.turns() || motion.way.is_curved();
+    let strays = bends || independent && !goes_alone(&from.joints, &to.joints);
+    (!strays).then(|| [at(from), at(to)])
 }
 
 /// What is wrong with a pair of bodies.

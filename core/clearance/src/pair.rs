@@ -49,7 +49,7 @@ impl View {
     }
 
     /// Places of its axes in its own chain, and in the machine's.
-    pub(crate) fn axes(&self) -> impl Iterator<Item = (usize, usize)> {
+    pub(crate) fn axes(&self) -> impl DoubleEndedIterator<Item = (usize, usize)> {
         self.axes.iter().copied().enumerate()
     }
 

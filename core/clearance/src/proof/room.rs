@@ -81,7 +81,7 @@ impl Room {
 
     /// The same by planes that hold the bodies apart where the piece ends: a linear axis uses of their gap what it takes the
     /// body along their direction, and nothing the other way. A rotary one takes no point farther than its angle times its
-    /// distance from the axis, which all others may have lengthened.
+    /// distance from the axis, which those behind it may have lengthened.
     pub fn between(
         view: &View,
         (planes, moves): (&mut Planes, &Shape),
@@ -95,14 +95,15 @@ impl Room {
             return None;
         }
         let (slopes, levers) = (view.slopes(around, planes.along()), view.levers(around));
-        let linear = view.axes().filter(|(place, _)| !view.is_rotary(*place));
-        let far: f64 = linear.map(|(_, axis)| widest(spans[axis])).sum();
         let mut uses = [[0.0; 2]; MAX_AXES];
-        for (place, axis) in view.axes() {
+        // How far the linear axes behind may take the body.
+        let mut far = 0.0;
+        for (place, axis) in view.axes().rev() {
             uses[axis] = match view.is_rotary(place) {
                 true => [levers[place] + far + free; 2],
                 false => [slopes[place].max(0.0), (-slopes[place]).max(0.0)],
             };
+            far += if view.is_rotary(place) { 0.0 } else { widest(spans[axis]) };
         }
         let mut room = Self::shared(view, piece, (free, &uses), spans)?;
         for (_, axis) in view.axes().filter(|(place, _)| !view.is_rotary(*place)) {

@@ -241,3 +241,37 @@ fn what_cannot_be_is_refused() {
         assert_contains(&run.err, &[says]);
     }
 }
+
+/// What of a tool does not fit together, and a stock that stays whole, is told before a program runs.
+#[test]
+fn check_tells_of_tools_that_do_not_fit_together() {
+    let told = |stock: &str, first: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("mine.toml"), machine(stock, first)).unwrap();
+        let run = post_in(folder.path(), &["check", "mine.toml"]);
+        format!("{}{}", run.out, run.err)
+    };
+    let whole = "the stock counts as it is before the first cut";
+    assert_contains(&told("", END_MILL), &[whole]);
+    let fits = told("cut = true", END_MILL);
+    for message in
+        [whole, "holder of tool 1", "edge of tool 1", "between cutter and holder of tool 1"]
+    {
+        assert!(!fits.contains(message), "{fits}");
+    }
+    let long = END_MILL.replace("[60, 25]", "[110, 25]");
+    assert_contains(
+        &told("cut = true", &long),
+        &["the holder of tool 1 goes 110 mm down, and the tool is 100 mm long"],
+    );
+    let high = END_MILL.replace("edge = 22", "edge = 45");
+    assert_contains(
+        &told("cut = true", &high),
+        &["edge of tool 1 is 45 mm above its tip, and its cutter ends at 40 mm"],
+    );
+    let apart = END_MILL.replace("[60, 25]", "[50, 25]");
+    assert_contains(
+        &told("cut = true", &apart),
+        &["between cutter and holder of tool 1 nothing is drawn on 10 mm"],
+    );
+}

@@ -119,9 +119,15 @@ fn a_measured_table_has_a_small_hole_at_its_pole() {
 fn what_looks_wrong_is_told() {
     let (_, run) = check(&["ac-trunnion", "--mount", "0,0,500"]);
     assert!(run.err.contains("part origin is out of travel: Z"), "{}", run.err);
-    let (check, run) = check(&["ac-trunnion", "--set", "axis.A.travel=[40, 60]"]);
-    assert!(run.err.contains("A cannot stand at the drawing's zero"), "{}", run.err);
-    assert_eq!(check["reach"]["ways_upright"], 0);
+    let (told, run) = check(&["ac-trunnion", "--set", "axis.A.travel=[40, 60]"]);
+    assert!(run.err.contains("A cannot stand where it shows 0"), "{}", run.err);
+    assert_eq!(told["reach"]["ways_upright"], 0);
+    let shown = ["ac-trunnion", "--set", "axis.A.travel=[40, 60]", "--set", "axis.A.zero=50"];
+    let (_, run) = check(&shown);
+    assert!(run.err.contains("A cannot stand where it shows 0"), "{}", run.err);
+    let shown = ["ac-trunnion", "--set", "axis.A.travel=[-60, 60]", "--set", "axis.A.zero=90"];
+    let (_, run) = check(&shown);
+    assert!(!run.err.contains("cannot stand where"), "{}", run.err);
 }
 
 /// The travel of the tip is that of the axes, from the gauge line less the tool.

@@ -20,6 +20,8 @@ const CLASSES: &[&str] = &[
     "head-table-bc",
     "head-table-ba",
     "nutating-head",
+    "lathe-xzc",
+    "mill-turn",
 ];
 
 fn folder() -> TempDir {
@@ -48,6 +50,7 @@ fn every_class_passes_the_check_and_makes_a_program() {
         let kind = kind.replace("four-axis-b", "rotary table B");
         let kind =
             kind.replace("nutating-head", "nutating").replace("table-table-nutating", "nutating");
+        let kind = kind.replace("lathe-xzc", "rotary table C").replace("mill-turn", "head-table");
         let kind = ["-ac", "-bc", "-ba"].iter().fold(kind, |kind, end| kind.replace(end, ""));
         assert!(check.out.contains(&kind), "{kind} is not in:\n{}", check.out);
         fs::write(folder.path().join("part.cls"), JOB).unwrap();
@@ -59,6 +62,29 @@ fn every_class_passes_the_check_and_makes_a_program() {
         assert_eq!(posted.code, 0, "{class}: {}", posted.err);
     }
     assert_eq!(help.matches("    - ").count(), CLASSES.len(), "{help}");
+}
+
+/// On a lathe X of the program is a diameter: to a radius of sqrt(20² + 5²) mm.
+#[test]
+fn a_lathe_is_posted_in_diameters() {
+    let folder = folder();
+    let new = post_in(folder.path(), &["new", "lathe", "--class", "lathe-xzc"], "");
+    assert_eq!(new.code, 0, "{}", new.err);
+    fs::write(folder.path().join("part.cls"), JOB).unwrap();
+    let posted = post_in(
+        folder.path(),
+        &["-q", "-m", "lathe.toml", "--tool-length", "80", "part.cls", "-o", "-"],
+        "",
+    );
+    assert_eq!(posted.code, 0, "{}", posted.err);
+    assert!(posted.out.contains("C14.036") && posted.out.contains("X41.231"), "{}", posted.out);
+    let radii = post_in(folder.path(), &["check", "lathe.toml", "--set", "word.X.is=X"], "");
+    assert!(radii.out.contains("\nX                 words are radii"), "{}", radii.out);
+    let diameters = post_in(folder.path(), &["check", "lathe.toml"], "");
+    assert!(!diameters.out.contains("words are radii"), "{}", diameters.out);
+    // A table in the middle of a mill is no work spindle.
+    let mill = post_in(folder.path(), &["check", "head-table-bc"], "");
+    assert!(!mill.out.contains("words are radii"), "{}", mill.out);
 }
 
 #[test]
@@ -234,6 +260,8 @@ fn flags_are_used_or_refused_in_every_class() {
             let path = folder.path().join("mill.toml");
             let before = fs::read_to_string(&path).unwrap();
             fs::remove_file(&path).unwrap();
+            // What a class has anyway changes nothing.
+            let value = if (*class, flag) == ("mill-turn", "--tcp") { "post" } else { value };
             let mut all = arguments.to_vec();
             all.extend([flag, value]);
             let run = post_in(folder.path(), &all, "");

@@ -7,7 +7,7 @@ pub use lanes::WordLanes;
 use nalgebra::Vector3;
 use post_plugin::Format;
 
-use crate::description::{Machine, OutputUnits, Tcp};
+use crate::description::{Machine, OutputUnits, TIP_WORDS, Tcp};
 use crate::kinematics::{Joints, MAX_AXES, Solver};
 use crate::tilted_plane::TiltedPlane;
 use crate::word_map::WordMap;
@@ -21,8 +21,10 @@ pub struct AxisWords {
     tcp: Tcp,
     /// Words of rotary axes, in the order of writing.
     rotary: Vec<Word>,
-    /// Words of linear axes, in the order of writing.
+    /// Words of linear axes, in the order of writing; where the control keeps the tip those of the tip.
     linear: Vec<Word>,
+    /// Words of linear axes that stand beside the tip's, where the control keeps it, in the order of writing.
+    standing: Vec<Word>,
     /// Axis values with the tip on the part origin and every rotary axis at zero.
     zero: Joints,
     /// Axis positions hold errors, so that the control's own frames are not theirs.
@@ -177,6 +179,9 @@ impl AxisWords {
         let (rotary, linear): (Vec<Word>, Vec<Word>) =
             words.partition(|word| machine.axes[word.joint].joint.rotary);
         let name = |word: &Word| machine.axes[word.joint].name.as_str();
+        let kept = machine.control.tcp == Tcp::Control;
+        let (linear, standing): (Vec<Word>, Vec<Word>) =
+            linear.into_iter().partition(|word| !kept || TIP_WORDS.contains(&name(word)));
         let scaled = linear.iter().any(|word| own_factor(machine, word.joint) != 1.0);
         let coupled = machine.word_map.as_ref().filter(|map| map.couples());
         Self {
@@ -187,6 +192,7 @@ impl AxisWords {
             erring: !machine.errors.is_empty(),
             rotary,
             linear,
+            standing,
             zero: [0.0; MAX_AXES],
             plane: None,
             coupled: coupled.cloned().map(Box::new),
@@ -207,7 +213,11 @@ impl AxisWords {
 
     /// Number of words.
     pub fn len(&self) -> usize {
-        self.rotary.len() + self.linear.len()
+        self.rotary.len() + self.linear.len() + self.standing.len()
+    }
+
+    fn words(&self) -> impl Iterator<Item = &Word> {
+        self.rotary.iter().chain(&self.linear).chain(&self.standing)
     }
 
     /// No words.
@@ -218,7 +228,7 @@ impl AxisWords {
     /// Takes the work offset from a solver: where the axes stand when the tip of its tool is on the part
     /// origin and every other axis shows zero. None if the linear axes cannot bring it there.
     pub fn set_zero(&mut self, solver: &Solver) -> Option<()> {
-        let words = self.rotary.iter().chain(&self.linear);
+        let words = self.words();
         self.zero = work_zero(solver, words.map(|word| (word.joint, word.reading)))?;
         Some(())
     }
@@ -308,18 +318,28 @@ impl AxisWords {
     /// Puts the linear axes on printed numbers and writes them to `values`.
     #[inline]
     pub fn print_linear(&self, joints: &mut Joints, values: &mut WordValues) {
-        for word in &self.linear {
-            let zero = self.zero[word.joint];
-            let value = word.printed((joints[word.joint] - zero) * word.per_unit);
-            values[word.place] = value;
-            joints[word.joint] = value * word.unit + zero;
-        }
+        self.linear.iter().for_each(|word| self.print_slide(word, joints, values));
+    }
+
+    /// Puts the linear axes that stand beside a tip that the control keeps on printed numbers and writes them to `values`;
+    /// false if there are none.
+    #[inline]
+    pub fn print_standing(&self, joints: &mut Joints, values: &mut WordValues) -> bool {
+        self.standing.iter().for_each(|word| self.print_slide(word, joints, values));
+        !self.standing.is_empty()
+    }
+
+    #[inline(always)]
+    fn print_slide(&self, word: &Word, joints: &mut Joints, values: &mut WordValues) {
+        let zero = self.zero[word.joint];
+        let value = word.printed((joints[word.joint] - zero) * word.per_unit);
+        values[word.place] = value;
+        joints[word.joint] = value * word.unit + zero;
     }
 
     /// The number nearest to `value` that has the decimals of the word at `place`; none if there is no such word.
     pub fn printed(&self, place: usize, value: f64) -> Option<f64> {
-        let mut words = self.rotary.iter().chain(&self.linear);
-        let word = words.find(|word| word.place == place)?;
+        let word = self.words().find(|word| word.place == place)?;
         Some(word.printed(value))
     }
 
@@ -331,8 +351,7 @@ impl AxisWords {
         value: f64,
         travel: Option<[f64; 2]>,
     ) -> Option<(usize, f64)> {
-        let mut words = self.rotary.iter().chain(&self.linear);
-        let word = words.find(|word| word.joint == joint)?;
+        let word = self.words().find(|word| word.joint == joint)?;
         let shown = |value: f64| (value + word.reading) * word.per_unit;
         let mut printed = word.printed(shown(value));
         if let Some([least, most]) = travel {
@@ -350,7 +369,7 @@ impl AxisWords {
     /// Values of a joint that are printed inside its travel: those between the outermost printed numbers in
     /// it, and so far beyond them as is still printed as they are. mm or radians.
     pub fn printed_travel(&self, joint: usize, [least, most]: [f64; 2]) -> [f64; 2] {
-        let mut words = self.rotary.iter().chain(&self.linear);
+        let mut words = self.words();
         let coupled = self.coupled.as_ref().is_some_and(|map| map.is_coupled(joint));
         let Some(word) = words.find(|word| word.joint == joint).filter(|_| !coupled) else {
             return [least, most];
@@ -361,6 +380,18 @@ impl AxisWords {
         let first = libm::ceil(steps(least) - 1e-6) - 0.499;
         let last = libm::floor(steps(most) + 1e-6) + 0.499;
         [value(first), value(last)]
+    }
+
+    /// The outermost values of a linear joint inside its travel that words can say, mm.
+    pub fn printed_ends(&self, joint: usize, [least, most]: [f64; 2]) -> [f64; 2] {
+        let Some(word) = self.linear.iter().find(|word| word.joint == joint) else {
+            return [least, most];
+        };
+        let zero = self.zero[joint];
+        let steps = |value: f64| (value - zero) * word.per_unit * word.scale;
+        let value = |steps: f64| steps * word.per_scale * word.unit + zero;
+        // A limit that is a printed number but for its last bits is that number.
+        [value(libm::ceil(steps(least) - 1e-6)), value(libm::floor(steps(most) + 1e-6))]
     }
 
     /// Half of the last decimal of the coarsest linear word, mm, and of the coarsest rotary one, radians; zero if

@@ -5,7 +5,7 @@ use crate::program::{MoveFeed, StraightMove};
 use post_machine::axis_words;
 use post_machine::axis_words::AxisWords;
 use post_machine::dependent_limit::DependentLimit;
-use post_machine::description::{Axis, Machine, Positions, Tcp, TextPlace};
+use post_machine::description::{Axis, LengthAxis, Machine, Positions, Tcp, TextPlace};
 use post_machine::diagnostic::{Diagnostic, LimitExcess, Short};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
@@ -18,7 +18,8 @@ pub(crate) fn depth_counts_down(machine: &Machine) -> Option<Diagnostic> {
     let axis = &machine.axes[axis_words::depth(machine)?];
     // One that stands across the tool has no say in its length.
     let towards = axis.joint.direction.dot(&machine.tool_axis) < -0.5;
-    (machine.control.tcp == Tcp::Post && towards).then(|| {
+    let adds = machine.control.tcp == Tcp::Post && machine.length_axis != LengthAxis::None;
+    (adds && towards).then(|| {
         Diagnostic::error(
             "machine-depth",
             format!(
@@ -26,7 +27,7 @@ pub(crate) fn depth_counts_down(machine: &Machine) -> Option<Diagnostic> {
                 axis.name, machine.name
             ),
         )
-        .help("ISO 841 has it count away from the part, on whichever side it moves; if that is what the control shows, leave `reversed` out")
+        .help("ISO 841 has it count away from the part, on whichever side it moves: leave `reversed` out, or turn its direction round, if that is what the control shows. An axis that does count towards the part (Z before a second spindle): [tool] length_axis = \"none\", where the control adds no length and the work offset is measured with the tool")
     })
 }
 

@@ -42,6 +42,8 @@ struct Heidenhain {
     inch: bool,
     tcp: bool,
     feed_decimals: u8,
+    /// Of F where it counts tenths of an inch.
+    tenths_decimals: u8,
     preset: i64,
     rotary_way: String,
     /// The control has rotary axes: it knows M129 and PLANE.
@@ -166,8 +168,8 @@ impl Dialect for Heidenhain {
             machine: setup.machine.to_owned(),
             inch,
             tcp: setup.tcp,
-            // An inch program counts F in tenths of an inch a minute: one digit less after the point.
-            feed_decimals: setup.integer("feed_decimals") as u8 + u8::from(inch),
+            feed_decimals: setup.integer("feed_decimals") as u8,
+            tenths_decimals: setup.integer("feed_decimals_inch") as u8,
             preset: setup.integer("preset"),
             rotary_way: rotary_way(setup),
             rotary: setup.words.iter().any(|word| word.rotary),
@@ -246,7 +248,8 @@ impl Dialect for Heidenhain {
     fn format(&self) -> Format {
         Format {
             words: self.axes.decimals(),
-            feed: self.feed_decimals,
+            // Tenths of an inch have one digit less after the point than inches.
+            feed: if self.inch { self.tenths_decimals + 1 } else { self.feed_decimals },
             inverse_time: None,
             feed_per_revolution: 3,
             extension: "h".to_owned(),

@@ -158,7 +158,7 @@ impl Heidenhain {
             }
             Some(Feed::PerMinute(feed)) => {
                 let (value, decimals) = match self.inch && length {
-                    true => (feed * 10.0, self.feed_decimals - 1),
+                    true => (feed * 10.0, self.tenths_decimals),
                     false => (feed, self.feed_decimals),
                 };
                 if self.feed.set(value) {

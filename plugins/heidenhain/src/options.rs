@@ -18,7 +18,13 @@ pub(crate) const OPTIONS: &[OptionSpec] = &[
     OptionSpec::integer("decimals", (1, 4), 3, "Of linear words, mm."),
     OptionSpec::integer("decimals_inch", (1, 4), 4, "Of linear words, inch."),
     OptionSpec::integer("rotary_decimals", (1, 4), 3, "Of rotary words, degrees."),
-    OptionSpec::integer("feed_decimals", (0, 3), 0, "Of F."),
+    OptionSpec::integer("feed_decimals", (0, 3), 0, "Of F, mm or degrees a minute."),
+    OptionSpec::integer(
+        "feed_decimals_inch",
+        (0, 3),
+        2,
+        "Of F in tenths of an inch a minute: an inch program.",
+    ),
     OptionSpec::integer(
         "preset",
         (-1, 99_999),

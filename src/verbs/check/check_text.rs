@@ -41,6 +41,7 @@ pub fn check(check: &Check) -> String {
         let by = number(moved.by, 3);
         rows.row(name, format_args!("{} +{by} by itself: {}", moved.axis, moved.words));
     }
+    rows.row_if("X", check.radius.as_ref());
     for limit in &check.limits {
         dependent_limit(&mut rows, limit);
     }

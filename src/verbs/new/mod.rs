@@ -209,7 +209,7 @@ fn choices(arguments: &NewArguments, path: &Path) -> Result<Choices, Failure> {
         title: arguments.title.clone().unwrap_or(stem.into_owned()),
         class: arguments.class.unwrap_or(Class::ThreeAxis),
         dialect: arguments.dialect.clone().unwrap_or("fanuc".to_owned()),
-        tcp: arguments.tcp.unwrap_or_default(),
+        tcp: arguments.tcp.unwrap_or(arguments.class.map_or(Tcp::Post, Class::usual_tcp)),
         units: arguments.units.unwrap_or_default(),
         travel: arguments.travel.clone(),
         cyclic: arguments.cyclic.clone(),
@@ -245,7 +245,7 @@ fn useless_flags(arguments: &NewArguments, class: Class) -> Vec<Diagnostic> {
             "tilting table",
             class.axis_at("tilt"),
         ),
-        ("--tcp", arguments.tcp.is_some(), Class::turns, "rotary axis", None),
+        ("--tcp", arguments.tcp.is_some(), Class::keeps_tips, "control that keeps the tip", None),
     ];
     let mut faults = Vec::new();
     for (flag, _, has, part, axis) in flags.into_iter().filter(|(_, given, ..)| *given) {

@@ -43,7 +43,8 @@ pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failur
             question("dialect of the control: fanuc, heidenhain, linuxcnc", &usual, dialect)?;
         choices.dialect = said.unwrap_or(usual);
     }
-    if choices.class.turns() && arguments.tcp.is_none() {
+    choices.tcp = arguments.tcp.unwrap_or(choices.class.usual_tcp());
+    if choices.class.keeps_tips() && arguments.tcp.is_none() {
         let said = question(
             "who keeps the tip on its path: post or control (RTCP, TCP, TCPM)",
             choices.tcp.name(),

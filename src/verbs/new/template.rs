@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use clap::ValueEnum;
-use post_machine::description::OutputUnits;
+use post_machine::description::{OutputUnits, Tcp};
 
 use super::{AxisSetting, Choices};
 
@@ -33,6 +33,10 @@ pub enum Class {
     HeadTableBa,
     /// A 45° nutating B head over a C table.
     NutatingHead,
+    /// A lathe with driven tools: X, Z and the work spindle C.
+    LatheXzc,
+    /// A lathe with a milling head: X, Y, Z, the work spindle C and B.
+    MillTurn,
 }
 
 /// A rotary axis of a class.
@@ -52,6 +56,25 @@ const TABLE_C: Rotary = Rotary {
     point: "[0, 0, 0]",
     travel: None,
     measure: "middle of the table: indicate its bore; X and Y of the axis line",
+};
+
+/// From the line of the work spindle to the gauge point, X at zero, mm.
+const LATHE_X: f64 = 400.0;
+
+const WORK_SPINDLE: Rotary = Rotary {
+    name: "C",
+    direction: "[0, 0, 1]",
+    point: "[0, 0, 0]",
+    travel: None,
+    measure: "line of the work spindle: indicate a turned diameter; X and Y of the line",
+};
+
+const MILLING_HEAD: Rotary = Rotary {
+    name: "B",
+    direction: "[0, 1, 0]",
+    point: "[\"400 + pivot\", 0, \"gauge\"]",
+    travel: Some([-30.0, 210.0]),
+    measure: "any point on its line",
 };
 
 const fn tilting(name: &'static str, direction: &'static str, travel: [f64; 2]) -> Rotary {
@@ -104,7 +127,45 @@ impl Class {
             Self::HeadHeadBc => "[w b X Y Z C B (S) t]",
             Self::HeadTableBc | Self::NutatingHead => "[w C' b X Y Z B (S) t]",
             Self::HeadTableBa => "[w A' b X Y Z B (S) t]",
+            Self::LatheXzc => "[w C' b Z X (S) t]",
+            Self::MillTurn => "[w C' b Z X Y B (S) t]",
         }
+    }
+
+    /// X goes from the line of the work spindle to one side, and its words are diameters.
+    fn is_lathe(self) -> bool {
+        matches!(self, Self::LatheXzc | Self::MillTurn)
+    }
+
+    fn linear(self) -> &'static [&'static str] {
+        match self {
+            Self::LatheXzc => &["X", "Z"],
+            _ => &["X", "Y", "Z"],
+        }
+    }
+
+    /// Where the gauge point stands with every axis at zero; parameters may stand in it.
+    fn gauge_point(self) -> String {
+        match self.is_lathe() {
+            true => format!("[{LATHE_X}, 0, \"gauge\"]"),
+            false => "[0, 0, \"gauge\"]".to_owned(),
+        }
+    }
+
+    /// The direction from the tip to the holder, and what is to be said of it.
+    fn tool_axis(self) -> [&'static str; 2] {
+        match self {
+            Self::LatheXzc => {
+                ["[0, 0, 1]", "along the work spindle; across it [1, 0, 0] and length_axis = \"X\""]
+            }
+            Self::MillTurn => ["[1, 0, 0]", "from the tip to the holder, B as it shows 90"],
+            _ => ["[0, 0, 1]", "from the tip to the holder"],
+        }
+    }
+
+    /// What the control shows of an axis that the drawing has at zero, degrees.
+    fn shown_at_zero(self, axis: &str) -> Option<f64> {
+        (self == Self::MillTurn && axis == "B").then_some(90.0)
     }
 
     fn rotary(self) -> Vec<Rotary> {
@@ -122,13 +183,15 @@ impl Class {
                 vec![table("A", "[1, 0, 0]"), swivel("B", "[0, 1, 0]", [-100.0, 100.0])]
             }
             Self::NutatingHead => vec![TABLE_C, swivel("B", "[0, 1, 1]", [0.0, 180.0])],
+            Self::LatheXzc => vec![WORK_SPINDLE],
+            Self::MillTurn => vec![WORK_SPINDLE, MILLING_HEAD],
         }
     }
 
     /// The addresses of its axes, linear ones first.
     pub fn axes(self) -> Vec<&'static str> {
         let rotary = self.rotary();
-        let mut axes = vec!["X", "Y", "Z"];
+        let mut axes = self.linear().to_vec();
         axes.extend(rotary.iter().map(|axis| axis.name));
         axes
     }
@@ -136,6 +199,16 @@ impl Class {
     /// It has any rotary axis.
     pub fn turns(self) -> bool {
         self != Self::ThreeAxis
+    }
+
+    /// Its control may keep the tip, which takes words X, Y and Z.
+    pub fn keeps_tips(self) -> bool {
+        self.turns() && self != Self::LatheXzc
+    }
+
+    /// Who keeps the tip, if nobody says so. The tool of a mill-turn is drawn across the part, and its length is put along Z.
+    pub fn usual_tcp(self) -> Tcp {
+        if self == Self::MillTurn { Tcp::Control } else { Tcp::Post }
     }
 
     /// The distance `gauge + pivot` stands in its file.
@@ -158,6 +231,10 @@ impl Class {
     /// Travel of an axis if nobody says another: mm or degrees; none turns without end.
     pub fn usual_travel(self, axis: &str, gauge: f64) -> Option<[f64; 2]> {
         match axis {
+            // To a little beyond the line of the work spindle.
+            "X" if self == Self::MillTurn => Some([-LATHE_X - 280.0, 20.0]),
+            "X" if self.is_lathe() => Some([-LATHE_X - 20.0, 20.0]),
+            "Y" if self.is_lathe() => Some([-100.0, 100.0]),
             "X" | "Y" => Some([-300.0, 300.0]),
             // From the upper end down to the table's face.
             "Z" => Some([-gauge.abs().max(1.0), 0.0]),
@@ -210,8 +287,11 @@ fn head(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         "# Positions are in mm in the machine frame, with every axis at zero; here its origin is the middle of the",
         "",
     );
+    let face = if choices.class.is_lathe() { "chuck" } else { "table" };
     line(
-        "# table's face. Directions are those of the tool as seen from the part (ISO 841): where the table moves,",
+        &format!(
+            "# {face}'s face. Directions are those of the tool as seen from the part (ISO 841): where the {face} moves,"
+        ),
         "",
     );
     line(
@@ -232,7 +312,10 @@ fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     line("[parameters]", "");
     line(
         &format!("gauge = {}", choices.gauge),
-        "gauge line over the table's face, all axes at zero",
+        match choices.class.is_lathe() {
+            true => "gauge point before the chuck's face, all axes at zero",
+            false => "gauge line over the table's face, all axes at zero",
+        },
     );
     // An axis whose point is given asks for no distance.
     let asked = |parameter: &str| {
@@ -253,11 +336,16 @@ fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     }
     line("", "");
     line("[workpiece]", "");
-    line("mount = [0, 0, 0]", "part origin: here the middle of the table; --mount for one job");
+    let middle = match choices.class.is_lathe() {
+        true => "part origin: here the middle of the chuck's face; --mount for one job",
+        false => "part origin: here the middle of the table; --mount for one job",
+    };
+    line("mount = [0, 0, 0]", middle);
     line("", "");
     line("[tool]", "");
-    line("gauge = [0, 0, \"gauge\"]", "");
-    line("axis  = [0, 0, 1]", "from the tip to the holder");
+    line(&format!("gauge = {}", choices.class.gauge_point()), "");
+    let [axis, remark] = choices.class.tool_axis();
+    line(&format!("axis  = {axis}"), remark);
 }
 
 fn linear_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
@@ -266,12 +354,20 @@ fn linear_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         ("Y", "[0, 1, 0]", "20 µm/m towards X: [20e-6, 1, 0]"),
         ("Z", "[0, 0, 1]", "20 µm/m towards X: [20e-6, 0, 1]"),
     ] {
+        if !choices.class.linear().contains(&name) {
+            continue;
+        }
         line("", "");
         line(&format!("[axis.{name}]"), "");
         line(&format!("linear   = {direction}"), &format!("as measured; a lean of {lean}"));
         travel(line, choices, name);
         reversed(line, choices, name);
         line(&format!("max_feed = {}", feed(choices, name, 20_000.0)), "mm/min");
+    }
+    if choices.class.is_lathe() {
+        line("", "");
+        line("[word.X]", "");
+        line("is = \"2 * X\"", "the program has diameters; all of this file is in radii");
     }
 }
 
@@ -286,6 +382,9 @@ fn rotary_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
             None => rotary.point.to_owned(),
         };
         line(&format!("point    = {point}"), rotary.measure);
+        if let Some(shown) = choices.class.shown_at_zero(name) {
+            line(&format!("zero     = {shown}"), "shown where it stands as drawn");
+        }
         travel(line, choices, name);
         reversed(line, choices, name);
         line(&format!("max_feed = {}", feed(choices, name, 3600.0)), "deg/min");
@@ -302,6 +401,9 @@ fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
             &format!("tcp     = \"{}\"", choices.tcp.name()),
             "\"post\": axis positions; \"control\": the tip (G43.4, M128, …)",
         );
+    }
+    if choices.class == Class::LatheXzc {
+        line("park    = { C = 0 }", "turned back off the part, at the end");
     }
     if choices.units == OutputUnits::Inch {
         line("units   = \"inch\"", "of the NC program; this file stays in mm");
@@ -374,10 +476,11 @@ fn travel(line: &mut impl FnMut(&str, &str), choices: &Choices, axis: &str) {
         None => choices.class.usual_travel(axis, choices.gauge),
     };
     if let Some([least, most]) = travel {
-        line(
-            &format!("travel   = [{least}, {most}]"),
-            "between the limit switches, as the control shows it",
-        );
+        let shown = match choices.class.is_lathe() && axis == "X" {
+            true => "between the limit switches; half of the diameters that the control shows",
+            false => "between the limit switches, as the control shows it",
+        };
+        line(&format!("travel   = [{least}, {most}]"), shown);
     }
     if travel.is_none() || endless {
         line("cyclic   = true", "turns without end; else travel = [-360, 360]");

@@ -111,3 +111,62 @@ fn a_quill_without_reserve_can_be_held() {
         .made(&depths(&[300.0, 200.0]));
     assert_eq!(made.words("W")[0], made.words("W")[1]);
 }
+
+/// Axes that were measured have their zeros beside the printed numbers: a quill that rests at its end stays inside it.
+#[test]
+fn a_quill_of_a_measured_machine_rests_inside_its_travel() {
+    let measured = on("boring-mill")
+        .long(150.0)
+        .with("axis.X.linear", "[1.000210574588, 0.000250926841, -0.000291328416]")
+        .with("axis.Y.linear", "[0.000132501651, 0.999777745065, 0.000065327332]")
+        .with("workpiece.mount", "[0, 40, 0]")
+        .with("tool.gauge", "[0.0003, 500.0004, 1000.00037]");
+    let levels = [500.0, 250.0, 249.0, 100.0, -30.0, 249.999, 250.0004, 250.5, -249.0];
+    let made = measured.made(&depths(&levels));
+    for (place, z) in levels.iter().enumerate() {
+        let wanted = V::new(place as f64, 0.0, *z);
+        let hit = |block: &Block| (made.model.pose(&block.words, 150.0).tip - wanted).norm();
+        let nearest = made.blocks.iter().map(hit).fold(f64::INFINITY, f64::min);
+        assert!(nearest < ROUNDING, "{z}: {nearest}\n{}", made.text);
+    }
+}
+
+/// With the tool centre point control on, a quill that stands keeps its own word, and X Y Z are the tip's: Z follows A with
+/// the quill as a part of the head.
+#[test]
+fn a_quill_that_is_held_stays_beside_the_words_of_the_tip() {
+    let file = |at: f64| {
+        format!(
+            "name = \"fork and quill\"\nchain = \"[w b X Y Z C A W (S) t]\"\n[control]\ntcp = \"control\"\n\
+             [axis.W]\nlinear = [0, 0, 1]\ntravel = [-200, 0]\nindexed = {at}\n"
+        )
+    };
+    let mut text = cl();
+    for (x, tilt) in [(0.0f64, 0.0f64), (40.0, 12.0), (90.0, 31.0), (120.0, 20.0)] {
+        let lean = tilt.to_radians();
+        let way = format!("GOTO / {x}, 10, 30, 0, {:.9}, {:.9}", lean.sin(), lean.cos());
+        text = text.line(&way);
+    }
+    let text = text.end();
+    let of = |at: f64| on("head-head").file(file(at)).made(&text);
+    let (short, long) = (of(0.0), of(-150.0));
+    for made in [&short, &long] {
+        let words = made.words("W");
+        assert!(words.iter().all(|word| *word == words[0]), "{words:?}");
+        for block in made.blocks.iter().filter(|block| !block.rapid) {
+            let pose = made.model.pose(&block.words, made.length);
+            assert!((pose.tip.y - 10.0).abs() < 0.011, "{}", made.text);
+        }
+    }
+    assert_eq!(long.words("W")[0], -150.0, "{}", long.text);
+    // The tip's words and angles are the same wherever the quill stands.
+    let same = |name: &str| (short.words(name), long.words(name));
+    for name in ["X", "Y", "A", "C"] {
+        let (one, other) = same(name);
+        assert_eq!(one.last(), other.last(), "{name}");
+    }
+    // It moves nothing by itself in a cut.
+    let share = file(0.0).replace("indexed = 0", "share = 0.5");
+    let said = on("head-head").file(share).refused(&text);
+    assert!(said.contains("indexed = … says where"), "{said}");
+}

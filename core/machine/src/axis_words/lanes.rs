@@ -35,7 +35,7 @@ impl AxisWords {
         count: usize,
         values: &mut WordLanes,
     ) -> Option<bool> {
-        if !self.one_each() {
+        if !self.one_each() || !self.standing.is_empty() {
             return None;
         }
         if self.plane.is_none() && self.tcp == Tcp::Post {

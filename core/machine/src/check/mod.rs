@@ -42,6 +42,7 @@ pub use probe::{InverseWork, Probe};
 use crate::description::{Axis, Machine};
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::NoClosedForm;
+use crate::kinematics::travel::{AT_END, passed};
 
 /// Everything that `post check` tells of one machine.
 #[derive(Clone, Debug, Serialize)]
@@ -65,6 +66,9 @@ pub struct Check {
     /// What words that are no axis values do.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub words: Vec<WordReport>,
+    /// What the words of X are on a lathe that says nothing of diameters.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<String>,
     /// What limits that depend on other axes leave of the travel.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub limits: Vec<LimitReport>,
@@ -119,10 +123,12 @@ impl Check {
             class,
             solved: if probe.closed_form() {
                 "closed form"
-            } else if probe.solver().planar() {
+            } else if probe.solver().planar() && probe.free().is_empty() {
                 "closed form, in the plane of two linear axes; what lies off it is refused"
             } else if probe.solver().has_arm() {
                 "closed form of a robot's arm, and from point to point numerically; each solution verified by the forward product"
+            } else if probe.solver().planar() {
+                "closed form: a rotary axis brings the tip into the plane of two linear ones; what it cannot bring there is refused"
             } else {
                 "numerically, from the point before; each solution verified by the forward product"
             }
@@ -131,6 +137,7 @@ impl Check {
             leaves: leaving::told(machine),
             signs: signs::table(&probe),
             words: words::told(&probe),
+            radius: words::radius(&probe),
             limits,
             legs,
             errors: errors::told(&erring),
@@ -181,7 +188,8 @@ fn warnings(
         ));
     }
     warnings.extend(misnamed(machine));
-    if let Some(volume) = volume {
+    // A tool that cannot stand upright is not asked for on the part origin: a live tool across a lathe never is there.
+    if let Some(volume) = volume.filter(|_| reach.ways_upright > 0) {
         for out in &volume.origin_out {
             warnings.push(format!(
                 "with the tool upright and {} mm long, the part origin is out of travel: {} would stand at {:.3}, its travel is {:.3} to {:.3}",
@@ -193,13 +201,14 @@ fn warnings(
             ));
         }
     }
-    warnings.extend(machine.axes.iter().flat_map(axis_warnings));
+    let slides = machine.axes.iter().any(|axis| !axis.joint.rotary);
+    warnings.extend(machine.axes.iter().flat_map(|axis| axis_warnings(axis, slides)));
     warnings.extend(inverse_warnings(probe, round_trip));
     warnings
 }
 
-/// What an axis by itself makes a builder look at.
-fn axis_warnings(axis: &Axis) -> Vec<String> {
+/// What an axis by itself makes a builder look at; on a machine that `slides` linear words count from a work offset.
+fn axis_warnings(axis: &Axis, slides: bool) -> Vec<String> {
     let mut warnings = Vec::new();
     if axis.joint.rotary && axis.indexed.is_none() && axis.max_feed.is_infinite() {
         warnings.push(format!(
@@ -207,12 +216,11 @@ fn axis_warnings(axis: &Axis) -> Vec<String> {
             axis.name
         ));
     }
-    if axis.joint.rotary
-        && let Some([least, most]) = axis.travel
-        && (least > 0.0 || most < 0.0)
+    if let Some([least, most]) = axis.travel.filter(|_| axis.joint.rotary && slides)
+        && passed(axis.travel, -axis.zero, AT_END).is_some()
     {
         warnings.push(format!(
-            "{} cannot stand at the drawing's zero: its travel is {} to {}; the work offset is taken there",
+            "{} cannot stand where it shows 0: its travel is {} to {}; the work offset is taken there",
             axis.name,
             number(axis.reading(least), 3),
             number(axis.reading(most), 3)
@@ -250,8 +258,9 @@ fn inverse_warnings(probe: &Probe<'_>, round_trip: &RoundTrip) -> Vec<String> {
     warnings
 }
 
-/// An axis whose letter stands for less of its direction than this is called by another's.
-const LETTERED: f64 = 0.5;
+/// An axis whose letter stands for less of its direction than this is called by another's, if that other stands for more
+/// than so much: a line 45 degrees between two is nobody's.
+const LETTERED: [f64; 2] = [0.5, 0.9];
 
 /// Axes whose letter says otherwise than their direction: ISO 841 has A, B, C about X, Y, Z. Arms are lettered otherwise, and
 /// of two axes about the same line one alone can have its letter.
@@ -268,7 +277,8 @@ fn misnamed(machine: &Machine) -> Vec<String> {
         let parts = axis.joint.direction.abs();
         let along = parts.imax();
         let (line, letter) = (["X", "Y", "Z"][along], letters[along]);
-        (parts[own] < LETTERED && !taken(letter)).then(|| {
+        let [little, nearly_all] = LETTERED;
+        (parts[own] < little && parts[along] > nearly_all && !taken(letter)).then(|| {
             format!(
                 "{} {moves} {line}, and ISO 841 calls such an axis {letter}: is its direction right, in a machine frame with Z along the spindle?",
                 axis.name

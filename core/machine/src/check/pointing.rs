@@ -137,6 +137,10 @@ impl Poles {
         let free = probe.free();
         let told = |told: &str| Self { told: told.to_owned(), at: Vec::new() };
         match (probe.freedom(), free.len()) {
+            (0, 1) if probe.solver().planar() => {
+                let name = &probe.machine().axes[free[0]].name;
+                return told(&format!("the tip on the line of {name}: {name} may stand anywhere"));
+            }
             (0, _) => return told("none: no rotary axis turns the tool in a cut"),
             (1, _) => {
                 return told("none: one rotary axis turns the tool, so each direction fixes it");

@@ -578,7 +578,12 @@ impl Builder<'_> {
     /// Where the control keeps the tip, the linear words are its coordinates.
     fn check_tip_words(&mut self, axes: &[Axis], span: Range<usize>) {
         let linear = linear_names(axes);
-        if linear != BTreeSet::from(TIP_WORDS) {
+        // Beside the three another may stand, with a word of its own.
+        let stands = |axis: &&Axis| !axis.joint.rotary && axis.indexed.is_some();
+        let standing: BTreeSet<&str> =
+            axes.iter().filter(stands).map(|axis| axis.name.as_str()).collect();
+        let moving: BTreeSet<&str> = linear.difference(&standing).copied().collect();
+        if moving != BTreeSet::from(TIP_WORDS) && linear != BTreeSet::from(TIP_WORDS) {
             let words = "with tcp = \"control\" the linear words are the tip's X, Y and Z";
             let names = linear.into_iter().collect::<Vec<_>>().join(", ");
             let (message, help) = match names.is_empty() {
@@ -588,12 +593,12 @@ impl Builder<'_> {
                 ),
                 false => (
                     format!("{words}, but the linear axes are called {names}"),
-                    "rename the axes, or use tcp = \"post\"",
+                    "an axis beside X, Y and Z stands while the tool cuts: indexed = … says where, and it keeps its own word; or use tcp = \"post\"",
                 ),
             };
             self.fault("machine-tcp", span.clone(), message, help);
         }
-        let held = |axis: &&Axis| !axis.joint.rotary && axis.indexed.is_some();
+        let held = |axis: &&Axis| stands(axis) && TIP_WORDS.contains(&axis.name.as_str());
         if let Some(axis) = axes.iter().find(held) {
             let message = format!(
                 "with tcp = \"control\" the control moves all linear axes, and {} stands between cuts (indexed)",

@@ -14,6 +14,9 @@ use crate::diagnostic::{Diagnostic, meant, nearest};
 /// Keys at the top of a file that are taken out before the rest is read.
 pub(super) const TAKEN_OUT: [&str; 2] = ["extends", "head"];
 
+/// Who may keep the tip, `[control] tcp`.
+const KEEPERS: [&str; 2] = ["control", "post"];
+
 /// Unknown keys of one file that are told, each by itself.
 const MOST: usize = 20;
 
@@ -83,6 +86,10 @@ impl Slip {
                 of_several("key", name, &[known.as_slice(), &TAKEN_OUT].concat())
             }
             Self::Key { name, known } => of_several("key", name, known),
+            Self::Word { name, known } if known == &KEEPERS && ["true", "false"].contains(&name.as_str()) => {
+                Diagnostic::error("machine-key", format!("`{name}` does not say who keeps the tip"))
+                    .help("\"control\": the words are the tip's (RTCP, TCP, TCPM: G43.4, TRAORI, M128); \"post\": they are axis positions")
+            }
             Self::Word { name, known } => of_several("value", name, known),
             Self::Missing(key) => {
                 Diagnostic::error("machine-key", format!("missing field `{key}`"))

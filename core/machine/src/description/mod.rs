@@ -83,7 +83,7 @@ use crate::servo::Servo;
 use crate::word_map::WordMap;
 
 /// The linear axes whose words can be those of a tip.
-const TIP_WORDS: [&str; 3] = ["X", "Y", "Z"];
+pub(crate) const TIP_WORDS: [&str; 3] = ["X", "Y", "Z"];
 
 /// Names of the linear axes.
 fn linear_names(axes: &[Axis]) -> BTreeSet<&str> {

@@ -219,6 +219,21 @@ impl Chain {
         self.errors.as_deref().unwrap_or_default()
     }
 
+    /// The chain in which the linear joints `still` are parts that do not move, where `values` has them, mm: they move nothing
+    /// any more, and what they carry is drawn where it stands.
+    pub(super) fn standing(&self, still: &[usize], values: &Joints) -> Self {
+        let mut chain = self.clone();
+        for &joint in still {
+            let by = chain.joints[joint].direction * values[joint];
+            chain.joints[joint].direction = Vector3::zeros();
+            for carried in &mut chain.joints[joint + 1..] {
+                carried.point += by;
+            }
+            chain.tip += by;
+        }
+        chain
+    }
+
     /// The joints, from the workpiece to the tool.
     #[inline]
     pub fn joints(&self) -> &[Joint] {

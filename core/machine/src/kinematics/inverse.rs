@@ -27,6 +27,9 @@ const MOST_SEEDS: usize = 243;
 /// Numeric solutions of which every axis is closer than this to another's are the same: mm or radians.
 const SAME: f64 = 1e-4;
 
+/// An axis as near to where it is held stands there, mm.
+const STANDS: f64 = 1e-6;
+
 /// Settings of the axes at which the ways of the tip are counted: a single one may happen to be singular.
 pub(super) const SETTINGS: [f64; 3] = [0.31, 0.57, 0.83];
 
@@ -52,6 +55,8 @@ pub struct Solver {
     pub(super) form: SolutionMethod,
     /// How far two linear axes may miss the tip, mm.
     pub(super) tip_tolerance: f64,
+    /// With linear axes that stand: the chain of which they are parts that do not move.
+    standing: Option<Box<(Chain, Linear)>>,
 }
 
 /// How a chain is solved by a search: fewer than three linear axes, so that rotary ones have to place the tip as well, or
@@ -70,9 +75,9 @@ fn numeric_form(
     let free: Vec<usize> = (0..chain.joints().len()).filter(moves).collect();
     let linear: Vec<usize> = free.iter().copied().filter(slides).collect();
     let planar = Planar::new(chain, &linear, rotary, held).filter(|_| !quills).map(Box::new);
-    // Two axes alone are for what lies in their plane.
-    let flat = planar.is_some() && rotary.is_empty();
-    if quills || (free.len() < 3 && !flat) {
+    // One or two axes are for what lies on their line or in their plane.
+    let flat = free.len() < 3;
+    if quills || free.is_empty() {
         let (linear, rotary) = (linear.len(), rotary.len());
         return Err(NoClosedForm::FewAxes { linear, rotary, quills });
     }
@@ -161,13 +166,41 @@ impl Solver {
             Err(NoClosedForm::FewAxes { quills, .. }) => numeric_form(&chain, freedom, quills)?,
             Err(lack) => return Err(lack),
         };
-        Ok(Self { chain, held, form, tip_tolerance: 0.0 })
+        let standing = match freedom.seconds.is_empty() && !freedom.still.is_empty() {
+            true => {
+                let chain = chain.standing(&freedom.still, &held);
+                let linear = Linear::new(&chain, &freedom.still, &[]);
+                linear.ok().map(|linear| Box::new((chain, linear.alone())))
+            }
+            false => None,
+        };
+        Ok(Self { chain, held, form, tip_tolerance: 0.0, standing })
     }
 
     /// The solver, two linear axes of which may miss a tip by `tip` mm: what they cannot reach in its plane is reached as
     /// nearly as they come, and who asks counts what is missing.
     pub fn within(self, tip: f64) -> Self {
         Self { tip_tolerance: tip, ..self }
+    }
+
+    /// The solver, in which quills in reserve rest and begin to move inside the travel that `ends` gives of a joint, mm: where
+    /// the words of the program can say that they do.
+    pub fn with_ends(mut self, ends: impl Fn(usize) -> Option<[f64; 2]>) -> Self {
+        if let SolutionMethod::Closed { linear, .. } = &mut self.form {
+            linear.keep_quills(ends);
+        }
+        self
+    }
+
+    /// Linear axes beside the three that place the tip stand in `joints` where they are held.
+    pub(super) fn stands_as_held(&self, joints: &Joints) -> bool {
+        let Some(standing) = &self.standing else {
+            return true;
+        };
+        let mut all = standing.0.joints().iter().zip(joints.iter().zip(&self.held));
+        all.all(|(joint, (value, held))| {
+            joint.rotary || joint.direction != Vector3::zeros() || (value - held).abs() < STANDS
+        })
     }
 
     /// The chain that is solved.
@@ -203,12 +236,21 @@ impl Solver {
         }
     }
 
-    /// The three linear axes that place the tip, if they do it alone.
+    /// The three linear axes that place the tip, if they do it alone or beside others that stand.
     #[inline]
     pub(super) fn linear(&self) -> Option<&Linear> {
+        self.sliding_chain().map(|(_, linear)| linear)
+    }
+
+    /// [`Solver::linear`], and the chain in which they move: for axis values that leave others where they are held.
+    #[inline]
+    pub(super) fn sliding_chain(&self) -> Option<(&Chain, &Linear)> {
         match &self.form {
-            SolutionMethod::Closed { linear, .. } if !linear.more => Some(linear),
-            _ => None,
+            SolutionMethod::Closed { linear, .. } if !linear.more => Some((&self.chain, linear)),
+            SolutionMethod::Closed { .. } => {
+                self.standing.as_ref().map(|standing| (&standing.0, &standing.1))
+            }
+            SolutionMethod::Numeric { .. } => None,
         }
     }
 
@@ -549,12 +591,22 @@ impl Solver {
 
     /// The forward product of `joints` stands behind them.
     pub(super) fn verified(&self, joints: &Joints, pose: &Pose, allowed: f64) -> bool {
+        self.verified_within(joints, pose, [0.0, allowed])
+    }
+
+    /// [`Solver::verified`], the tip within `tip` mm beside rounding, the tool axis within `axis` radians.
+    pub(super) fn verified_within(
+        &self,
+        joints: &Joints,
+        pose: &Pose,
+        [tip, axis]: [f64; 2],
+    ) -> bool {
         let reached = self.chain.forward(joints);
-        let allowed = allowed + self.chain.largest_error_turn();
+        let axis = axis + self.chain.largest_error_turn();
         let reach =
             1000.0 + pose.tip.norm() + joints[..MAX_AXES].iter().fold(0.0, |sum, q| sum + q.abs());
-        (reached.tip - pose.tip).norm() < VERIFIED * reach / 1000.0
-            && angle(reached.axis, pose.axis) < allowed
-            && (self.chain.edge().is_none() || angle(reached.edge, pose.edge_across()) < allowed)
+        (reached.tip - pose.tip).norm() < VERIFIED * reach / 1000.0 + tip
+            && angle(reached.axis, pose.axis) < axis
+            && (self.chain.edge().is_none() || angle(reached.edge, pose.edge_across()) < axis)
     }
 }

@@ -101,8 +101,10 @@ impl<'a> TcpBlock<'a> {
     /// whose linear axes alone do not place the tip.
     #[inline]
     pub fn new(solver: &'a Solver, along: f64, from: &'a Trace, to: &'a Trace) -> Option<Self> {
-        let linear = solver.linear()?;
-        let chain = solver.chain();
+        let (chain, linear) = solver.sliding_chain()?;
+        if !(solver.stands_as_held(&from.joints) && solver.stands_as_held(&to.joints)) {
+            return None;
+        }
         let steps = std::array::from_fn(|index| to.joints[index] - from.joints[index]);
         let tip = |trace: &Trace| trace.pose.tip - trace.pose.axis * along;
         Some(Self {
@@ -218,10 +220,10 @@ impl<'a> TcpBlock<'a> {
     /// An arm keeps its length while it turns, and the tip is never farther from where it ends than the way that the
     /// axes make it go.
     pub fn bend_by_arms(solver: &Solver, ends: [&Joints; 2], tip: Vector3<f64>) -> f64 {
-        let Some(linear) = solver.linear().filter(|linear| linear.inverse.is_some()) else {
+        let sliding = solver.sliding_chain().filter(|(_, linear)| linear.inverse.is_some());
+        let Some((chain, linear)) = sliding else {
             return f64::INFINITY;
         };
-        let chain = solver.chain();
         let axes = chain.joints();
         let step = |index: usize| (ends[1][index] - ends[0][index]).abs();
         let mut behind = ArmBend::at(chain.tip(), 0.0, 0.0);
@@ -361,8 +363,11 @@ impl<'a> TcpBlock<'a> {
         for (index, joint) in axes.iter().enumerate().skip(self.linear.first).rev() {
             let k = joint.direction;
             if !joint.rotary {
-                filled -= 1;
-                columns[filled] = k;
+                // One that stands is no column.
+                if self.linear.joints.contains(&index) {
+                    filled -= 1;
+                    columns[filled] = k;
+                }
                 continue;
             }
             let (sine, cosine) = turns.of(index);

@@ -51,6 +51,8 @@ struct Quill {
     share: Option<f64>,
     /// Travel of the other, mm.
     travel: [f64; 2],
+    /// Where it stands while the other can go on alone, mm.
+    rest: f64,
 }
 
 /// Steps to a place that errors of axes have part in; two or three are needed.
@@ -96,7 +98,9 @@ impl Linear {
             return Err(NoClosedForm::FlatLinearAxes);
         }
         let more = all.len() > 3;
-        let inverse = if between || more { None } else { matrix.try_inverse() };
+        let alone =
+            all.iter().filter(|index| chain.joints()[**index].direction.norm() > 0.0).count();
+        let inverse = if between || alone > 3 { None } else { matrix.try_inverse() };
         let seconds = seconds
             .iter()
             .filter_map(|(joint, second, travel)| {
@@ -109,6 +113,7 @@ impl Linear {
                     beside: joints.iter().position(|joint| *joint == of)?,
                     share,
                     travel: *travel,
+                    rest: 0.0,
                 })
             })
             .collect();
@@ -121,6 +126,24 @@ impl Linear {
             seconds,
             more,
         })
+    }
+
+    /// With others that are parts of their chain and do not move.
+    pub(super) fn alone(mut self) -> Self {
+        self.more = false;
+        self
+    }
+
+    /// Puts the ends at which a quill takes the place of the axis beside it, and where it rests, on the travel that `ends`
+    /// gives of a joint.
+    pub(super) fn keep_quills(&mut self, ends: impl Fn(usize) -> Option<[f64; 2]>) {
+        let joints = self.joints;
+        for quill in self.seconds.iter_mut().filter(|quill| quill.share.is_none()) {
+            quill.travel = ends(joints[quill.beside]).unwrap_or(quill.travel);
+            if let Some([least, most]) = ends(quill.joint) {
+                quill.rest = quill.rest.max(least).min(most);
+            }
+        }
     }
 
     /// Puts the linear axes of `joints` where the tip stands on `tip` (mm, part frame).
@@ -295,7 +318,7 @@ impl Linear {
             joints[joint] = 0.0;
         }
         for quill in &self.seconds {
-            joints[quill.joint] = 0.0;
+            joints[quill.joint] = if quill.share.is_some() { 0.0 } else { quill.rest };
         }
         let mut columns = [Vector3::zeros(); MAX_AXES];
         let mut from = chain.tip();
@@ -311,7 +334,7 @@ impl Linear {
                 from += joint.direction * joints[index];
             }
         }
-        let way = tip + chain.mount() - from;
+        let mut way = tip + chain.mount() - from;
         let mut main = self.joints.map(|joint| columns[joint]);
         for quill in &self.seconds {
             if let Some(share) = quill.share {
@@ -319,33 +342,37 @@ impl Linear {
                 *beside = *beside * (1.0 - share) + columns[quill.joint] * share;
             }
         }
+        let mut moving = self.joints;
         let mut values = solve(&main, way)?;
+        // A quill takes the place of an axis that stands at its end, which moves what the others are asked for.
+        while let Some((quill, end)) = self.beyond(&moving, &values) {
+            joints[moving[quill.beside]] = end;
+            moving[quill.beside] = quill.joint;
+            way += columns[quill.joint] * quill.rest - main[quill.beside] * end;
+            main[quill.beside] = columns[quill.joint];
+            values = solve(&main, way)?;
+        }
+        for (joint, value) in moving.iter().zip(values.iter()) {
+            joints[*joint] = *value;
+        }
         for quill in &self.seconds {
-            let value = values[quill.beside];
-            match quill.share {
-                Some(share) => {
-                    joints[quill.joint] = value * share;
-                    values[quill.beside] = value * (1.0 - share);
-                }
-                None => {
-                    let [least, most] = quill.travel;
-                    let end = value.max(least).min(most);
-                    if end != value {
-                        // The other stands at its end, and the quill takes its place.
-                        let stood = main[quill.beside] * end;
-                        main[quill.beside] = columns[quill.joint];
-                        let rest = solve(&main, way - stood)?;
-                        joints[quill.joint] = rest[quill.beside];
-                        values = rest;
-                        values[quill.beside] = end;
-                    }
-                }
+            if let Some(share) = quill.share {
+                let value = values[quill.beside];
+                joints[quill.joint] = value * share;
+                joints[self.joints[quill.beside]] = value * (1.0 - share);
             }
         }
-        for (value, joint) in values.iter().zip(self.joints) {
-            joints[joint] = *value;
-        }
         Ok(())
+    }
+
+    /// A quill whose axis would pass its travel, and the end at which that stands; `moving` are the axes that go to `values`.
+    fn beyond(&self, moving: &[usize; 3], values: &Vector3<f64>) -> Option<(&Quill, f64)> {
+        self.seconds.iter().filter(|quill| quill.share.is_none()).find_map(|quill| {
+            let place = quill.beside;
+            let value = values[place];
+            let end = value.max(quill.travel[0]).min(quill.travel[1]);
+            (moving[place] == self.joints[place] && end != value).then_some((quill, end))
+        })
     }
 }
 

@@ -44,6 +44,8 @@ fn sized<const R: usize>(
     left: &mut usize,
 ) -> (Joints, f64) {
     let stepping = match free.len() {
+        1 => stepping::<1, R>,
+        2 => stepping::<2, R>,
         3 => stepping::<3, R>,
         4 => stepping::<4, R>,
         5 => stepping::<5, R>,

@@ -184,7 +184,8 @@ impl Solver {
             count += 1;
         }
         let (joints, miss) = numeric::solve(&self.chain, &moving[..count], pose, &start, left);
-        match self.verified(&joints, pose, tolerance.max(VERIFIED)) {
+        let tip = if count < 3 { self.tip_tolerance } else { 0.0 };
+        match self.verified_within(&joints, pose, [tip, tolerance.max(VERIFIED)]) {
             true => Ok(joints),
             // Linear axes put the tip wherever it is wanted: what is missed is how the tool stands.
             false if self.places_tip() => {

@@ -10,7 +10,7 @@ use super::certificate::{chord_angle, larger};
 use post_plugin::Format;
 
 use post_machine::axis_words::{AxisWords, WordValues};
-use post_machine::description::{ControlPoint, Machine};
+use post_machine::description::{ControlPoint, Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::batch::Column;
 use post_machine::kinematics::choose::{RotaryAxes, RotaryTravel};
@@ -124,22 +124,34 @@ impl Placer {
         held: &Joints,
     ) -> Result<Self, Box<Diagnostic>> {
         let fault = |message: String| Diagnostic::error("machine-chain", message).boxed();
-        let solver = |length: f64| {
+        let solver = |length: f64, held: &Joints| {
             machine.solver_at(length, held).map_err(|lack| machine.unsolvable(&lack).boxed())
         };
-        let tip = solver(length)?;
+        let tip = solver(length, held)?;
         let mut words = AxisWords::new(machine, format);
         // The operator measures to the tip, whichever point is guided.
         words.set_zero(&tip).ok_or_else(|| {
             fault("with every rotary axis at zero the linear axes do not span the space".to_owned())
         })?;
         let along = machine.control_point.along;
-        let solver = if along == 0.0 { tip } else { solver(length - along)? };
+        // The word of an axis that stands is where it stands.
+        let mut held = *held;
+        let moved = words.print_standing(&mut held, &mut WordValues::default());
+        let solver = match along == 0.0 && !moved {
+            true => tip,
+            false => solver(length - along, &held)?,
+        };
         Ok(Self::new(machine, solver, words))
     }
 
     /// Makes the placer of a machine with the tool of `solver` in it.
     pub fn new(machine: &Machine, solver: Solver, words: AxisWords) -> Self {
+        let ends = |joint: usize| Some(words.printed_ends(joint, machine.axes[joint].travel?));
+        let solver = match machine.control.tcp {
+            Tcp::Post => solver.with_ends(ends),
+            // Their words are the tip's.
+            Tcp::Control => solver,
+        };
         let limits = |rotary: bool| {
             machine
                 .axes
@@ -421,6 +433,7 @@ impl Placer {
         node.trace.turns = chain.turns(joints);
         let along = self.control_point.along;
         let printed = self.words.print_tip(place - target.axis * along, &mut node.words);
+        self.words.print_standing(joints, &mut node.words);
         let wanted = match printed {
             None => place,
             Some(tip) if along == 0.0 => tip,

@@ -209,7 +209,7 @@ impl BlockStage<'_> {
                     "retract",
                     format!("the tool leans by {leans:.1}°: {name} at {then:.3} mm, the end of its travel, is not proven to lead it away from the part"),
                 )
-                .help("end the path with the tool less inclined, or name a position with [control] retract and answer for it"),
+                .help("[control] leave = … leads the tool back along its own axis first, so many mm; or end the path with the tool less inclined, or name a position with [control] retract and answer for it"),
             });
         }
     }

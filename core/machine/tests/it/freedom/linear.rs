@@ -189,3 +189,74 @@ fn a_quill_in_reserve_moves_where_the_other_ends() {
     println!("quill in reserve: {inside} inside, {beyond} beyond, tip {tip:.1e} mm");
     assert!(inside > at_least(1_000) && beyond > at_least(1_000) && tip < 1e-9, "{tip}");
 }
+
+/// Two quills in reserve, both of which may be wanted at once, on linear axes that do not stand square.
+#[test]
+fn two_quills_in_reserve_take_over_together() {
+    let (rounds, mut rng) = randomised(3_000, 16);
+    let (mut tip, mut both, mut one) = (0.0f64, 0, 0);
+    for round in rounds {
+        let mut kinds = vec![Kind::Linear; 5];
+        kinds.extend(vec![Kind::Free; round % 3]);
+        let mut machine = Random::of(&mut rng, &kinds);
+        let linear = machine.reference.linear();
+        if let [a, b] = *machine.free.as_slice()
+            && machine
+                .reference
+                .direction(&machine.held, a)
+                .cross(&machine.reference.direction(&machine.held, b))
+                .norm()
+                < 0.05
+        {
+            continue;
+        }
+        // Each quill goes along its axis but for a lean.
+        let pairs = [[linear[0], linear[1]], [linear[3], linear[2]]];
+        for [beside, quill] in pairs {
+            let lean = rng.point(0.1);
+            let joints = &mut machine.reference.joints;
+            joints[quill].direction = (joints[beside].direction + lean).normalize();
+        }
+        let travel = [rng.range(-150.0, -20.0), rng.range(20.0, 150.0)];
+        let seconds = pairs.map(|[of, quill]| (quill, Second::Reserve { of }, travel));
+        let freedom = Freedom {
+            rotary: machine.free.clone(),
+            held: machine.held,
+            seconds: seconds.to_vec(),
+            ..Freedom::default()
+        };
+        let Ok(solver) = Solver::with(machine.reference.chain(), &freedom) else {
+            continue;
+        };
+        let mut q = machine.values(&mut rng);
+        for [beside, quill] in pairs {
+            q[beside] = rng.range(-SIZE, SIZE);
+            q[quill] = 0.0;
+        }
+        let ways = ways(&machine, &q);
+        let three = |left_out: [usize; 2]| {
+            let columns = ways.iter().filter(|(index, _)| !left_out.contains(index));
+            let columns: Vec<Vector3<f64>> = columns.map(|(_, way)| *way).collect();
+            Matrix3::from_columns(&columns).determinant().abs()
+        };
+        let flat = |[a, b]: [usize; 2]| three([pairs[0][a], pairs[1][b]]) < 0.15;
+        if [[0, 0], [0, 1], [1, 0], [1, 1]].into_iter().any(flat) {
+            continue;
+        }
+        let (found, worst) = solutions(&solver, &machine, &q);
+        tip = tip.max(worst);
+        for solution in &found {
+            let out = pairs.map(|[beside, quill]| {
+                let end = solution[beside];
+                assert!((travel[0]..=travel[1]).contains(&end), "round {round}: {end} {travel:?}");
+                let at_end = end == travel[0] || end == travel[1];
+                assert!(solution[quill] == 0.0 || at_end, "round {round}: {solution:?} {travel:?}");
+                solution[quill] != 0.0
+            });
+            both += usize::from(out == [true, true]);
+            one += usize::from(out[0] != out[1]);
+        }
+    }
+    println!("two quills: {both} times both, {one} times one, tip {tip:.1e} mm");
+    assert!(both > at_least(100) && one > at_least(100) && tip < 1e-9, "{both} {one} {tip}");
+}

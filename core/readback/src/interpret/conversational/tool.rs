@@ -1,5 +1,8 @@
 //! The tool: its call changes it and switches its length on.
 
+use post_machine::axis_words;
+use post_machine::description::LengthAxis;
+
 use super::{Answer, BlockNames, feed_unit};
 use crate::ProgramEvent;
 use crate::interpret::block_words::BlockWords;
@@ -11,7 +14,8 @@ pub(super) fn call(
     said: &BlockNames<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.only(control, &["X", "Y", "Z"], &["DL", "DR", "DR2"])?;
+    said.only(control, &["X", "Y", "Z", "U", "V", "W"], &["DL", "DR", "DR2"])?;
+    let across = across(control, said)?;
     if let Some(speed) = words.take(b'S') {
         control.modal.speed = speed;
         control.speed_changed();
@@ -44,13 +48,36 @@ pub(super) fn call(
     control.tools.by_tool = true;
     control.tools.length_on = true;
     control.tools.longer = longer;
-    control.tools.across = match (said.has("X"), said.has("Y")) {
+    control.tools.across = across;
+    control.length_changed()?;
+    control.left_over(words)
+}
+
+/// The plane across the tool axis that a call names. The length goes along that axis, so that U, V or W is to be the one of
+/// the machine file.
+fn across(control: &ControlState, said: &BlockNames<'_>) -> Answer<ArcPlane> {
+    let second = ["U", "V", "W"].into_iter().find(|name| said.has(name));
+    if let Some(name) = second {
+        let machine = &control.machine;
+        let own = machine.axes.iter().position(|axis| axis.name == name);
+        let along = match machine.length_axis {
+            LengthAxis::Said(place) => Some(place),
+            _ => axis_words::depth(machine),
+        };
+        if own.is_none() || own != along {
+            let message = format!(
+                "the tool lies along {name} from here, and the length goes along {}: [tool] length_axis = \"{name}\" in the machine file says otherwise",
+                along.map_or("no axis", |place| &machine.axes[place].name)
+            );
+            return Err(control.refuse("nc-tool", message));
+        }
+    }
+    let named = |main: &str, beside: &str| said.has(main) || second == Some(beside);
+    Ok(match (named("X", "U"), named("Y", "V")) {
         (true, _) => ArcPlane::Yz,
         (_, true) => ArcPlane::Zx,
         _ => ArcPlane::Xy,
-    };
-    control.length_changed()?;
-    control.left_over(words)
+    })
 }
 
 /// `TOOL DEF 5`: it is made ready.

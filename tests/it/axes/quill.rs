@@ -143,9 +143,7 @@ fn a_quill_that_is_held_stays_beside_the_words_of_the_tip() {
     };
     let mut text = cl();
     for (x, tilt) in [(0.0f64, 0.0f64), (40.0, 12.0), (90.0, 31.0), (120.0, 20.0)] {
-        let lean = tilt.to_radians();
-        let way = format!("GOTO / {x}, 10, 30, 0, {:.9}, {:.9}", lean.sin(), lean.cos());
-        text = text.line(&way);
+        text = text.cut(V::new(x, 10.0, 30.0), lean(tilt, 90.0));
     }
     let text = text.end();
     let of = |at: f64| on("head-head").file(file(at)).made(&text);

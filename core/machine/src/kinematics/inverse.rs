@@ -75,9 +75,10 @@ fn numeric_form(
     let free: Vec<usize> = (0..chain.joints().len()).filter(moves).collect();
     let linear: Vec<usize> = free.iter().copied().filter(slides).collect();
     let planar = Planar::new(chain, &linear, rotary, held).filter(|_| !quills).map(Box::new);
-    // One or two axes are for what lies on their line or in their plane.
+    // One or two axes are for what lies on their line or in their plane, if one goes along it.
     let flat = free.len() < 3;
-    if quills || free.is_empty() {
+    let beside = linear.len() == 2 && rotary.is_empty() && planar.is_none();
+    if quills || linear.is_empty() && flat || beside {
         let (linear, rotary) = (linear.len(), rotary.len());
         return Err(NoClosedForm::FewAxes { linear, rotary, quills });
     }

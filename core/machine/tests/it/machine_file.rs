@@ -142,7 +142,7 @@ const SLIPS: &[Slip] = &[
         false,
     ),
     ("tcp = \"post\"", "tcp = \"posts\"", "43 \"posts\"", "there is no value `posts`", true),
-    ("tcp = \"post\"", "tcp = true", "43 true", "there is no value `true`", true),
+    ("tcp = \"post\"", "tcp = true", "43 true", "`true` does not say who keeps the tip", true),
     (
         "rotary = [0, 0, 1]",
         "rotary = \"Z\"",

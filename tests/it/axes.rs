@@ -7,6 +7,7 @@ mod approach;
 mod choice;
 mod edge;
 mod exclusive;
+mod few;
 mod heads;
 mod indexed;
 mod leave;

@@ -165,6 +165,14 @@ pub fn dialect_knowing(
                     travel: axis.travel.map(|travel| travel.map(|end| axis.reading(end))),
                 }
             })
+            .chain(machine.along.iter().map(|word| ProgramWord {
+                name: word.name.clone(),
+                rotary: false,
+                wrapped: false,
+                depth: false,
+                carries_part: false,
+                travel: None,
+            }))
             .collect(),
         options: given(&control.options),
         cl_file: cl_file.map(cl_name).unwrap_or_default(),

@@ -7,6 +7,7 @@
 //! a control is told a plane. [`servo`] has the equations of the axes' servos. [`diagnostic`] is how every storey of the core says what is wrong.
 //! There is no input or output here, no unsafe code, no CL record and no dialect's name.
 
+pub mod along_word;
 pub mod axis_words;
 pub mod calibrate;
 pub mod check;

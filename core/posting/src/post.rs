@@ -231,7 +231,11 @@ impl<'a> Post<'a> {
             planned: Vec::new(),
             observers: Rc::default(),
             emit: EmitStage::new(machine, &job.facts, dialect, output, &findings),
-            runs: RunBuffers::new(job.longest_run.unwrap_or(usize::MAX)),
+            // A word that goes with the way is written block by block.
+            runs: RunBuffers::new(match machine.along {
+                Some(_) => 0,
+                None => job.longest_run.unwrap_or(usize::MAX),
+            }),
         };
         if job.plans {
             stages.blocks.plans();

@@ -160,3 +160,86 @@ fn check_tells_what_words_do() {
     let circle = told(&["word.B.is=B + C", "word.C.is=C + B"]);
     assert!(circle.err.contains("do not tell where the axes stand"), "{}", circle.err);
 }
+
+/// A word along the way: what it goes by in each block is its share of the way of the tip, which is measured here by the
+/// tests' own kinematics; nothing adds up over the blocks, and a block that says another is refused.
+#[test]
+fn a_word_goes_with_the_way_of_the_tip() {
+    let per_mm = 0.0333;
+    let setup = || on("xyzac-trt").file(format!("[word.U]\nis = \"{per_mm} * s\"\n"));
+    let text = turning_cuts();
+    let made = setup().made(&text);
+    let word = |line: &str| {
+        let word = line.split_whitespace().find(|word| word.starts_with('U'))?;
+        Some(word[1..].parse::<f64>().unwrap())
+    };
+    let lines: Vec<&str> = made.text.lines().collect();
+    let (mut way, mut last, mut cuts) = (0.0, None::<V>, 0);
+    for block in &made.blocks {
+        let tip = made.model.pose(&block.words, made.length).tip;
+        if let (Some(last), false) = (last, block.rapid) {
+            way += (tip - last).norm();
+            cuts += 1;
+            let said = word(lines[block.line - 1]).expect("a word in each cut");
+            assert!((said - per_mm * way).abs() < 0.002, "{said} {}\n{}", per_mm * way, made.text);
+        }
+        last = Some(tip);
+    }
+    assert!(cuts > 4 && way > 10.0, "{cuts} {way}");
+    // The same path without it.
+    let plain = on("xyzac-trt").made(&text);
+    assert_eq!(plain.blocks.len(), made.blocks.len());
+    // Read back, and with one word spoilt.
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let part = write("part.ncl", &text);
+    let machine =
+        write("m.toml", &format!("extends = \"xyzac-trt\"\n[word.U]\nis = \"{per_mm} * s\"\n"));
+    let verify = |nc: &str| {
+        post(&[
+            "verify",
+            nc,
+            "-m",
+            &machine,
+            "--against",
+            &part,
+            "--tool-length",
+            "100",
+            "--set",
+            "control.planes=false",
+        ])
+    };
+    let same = verify(&write("part.ngc", &made.text));
+    assert_eq!(same.code, 0, "{}{}", same.out, same.err);
+    let spoilt =
+        lines.iter().rposition(|line| word(line).is_some_and(|value| value > 0.0)).unwrap();
+    let other: Vec<String> = lines
+        .iter()
+        .enumerate()
+        .map(|(place, line)| match word(line).filter(|_| place == spoilt) {
+            Some(value) => line.replace(&format!("U{value:.3}"), &format!("U{:.3}", value + 0.5)),
+            None => (*line).to_owned(),
+        })
+        .collect();
+    let other = verify(&write("other.ngc", &other.join("\n")));
+    assert!(other.code == 1 && other.err.contains("nc-along"), "{}{}", other.out, other.err);
+}
+
+#[test]
+fn a_word_along_the_way_has_a_letter_of_its_own() {
+    let said = |file: &str| on("xyzac-trt").file(file).refused(&turning_cuts());
+    for (file, wanted) in [
+        ("[word.C]\nis = \"2 * s\"\n", "it is the word of an axis"),
+        ("[word.F]\nis = \"2 * s\"\n", "E, U, V, W, A, B or C can be such a word"),
+        ("[word.E]\nis = \"s\"\ntravel = [0, 1]\n", "it has no travel"),
+        ("[word.E]\nis = \"s\"\n[word.U]\nis = \"s\"\n", "one word alone"),
+        ("[word.E]\nis = \"s + X\"\n", "is the word of no axis"),
+    ] {
+        let told = said(file);
+        assert!(told.contains(wanted), "{file}: {told}");
+    }
+}

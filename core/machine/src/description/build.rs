@@ -319,6 +319,7 @@ impl Builder<'_> {
         let mut limits = self.dependent_limits(&file.limit, &axes);
         let word_map = self.word_map(&file.word, &axes, &mut limits);
         limits.extend(self.legs(&file.leg, &axes));
+        let along = self.along(file, &axes);
         let mount = file.workpiece.mount.as_ref();
         let mount = mount.map_or_else(Vector3::zeros, |mount| self.vector(mount));
         let turn = self.checked(&file.workpiece.turn).unwrap_or(0.0).to_radians();
@@ -359,6 +360,7 @@ impl Builder<'_> {
             error_tables,
             limits,
             word_map,
+            along,
             mount,
             mount_said: file.workpiece.mount.is_some(),
             given_travel: Vec::new(),

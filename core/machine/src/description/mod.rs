@@ -74,6 +74,7 @@ pub use solids::Solid;
 pub use spindle::SpindleSpeeds;
 pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 
+use crate::along_word::AlongWord;
 use crate::dependent_limit::DependentLimit;
 use crate::diagnostic::{Diagnostic, SourcePlace};
 use crate::kinematics::{
@@ -106,6 +107,8 @@ pub struct Machine {
     pub limits: Vec<DependentLimit>,
     /// What words make of axis values; none where each word is the value of its axis.
     pub word_map: Option<WordMap>,
+    /// A word of no axis, which goes with the way of the tip.
+    pub along: Option<AlongWord>,
     /// Where the part origin sits with all axes at zero, mm, machine frame.
     pub mount: Vector3<f64>,
     /// The machine file, or the job, says where the part sits.

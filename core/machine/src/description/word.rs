@@ -8,9 +8,11 @@ use toml::Spanned;
 
 use super::Axis;
 use super::build::Builder;
+use super::file::MachineFile;
 use super::keys::axes_are;
 use super::quantity::KeyedNumber;
 use super::table::keys;
+use crate::along_word::AlongWord;
 use crate::dependent_limit::{DependentLimit, Named, SHOWN};
 use crate::kinematics::{Joints, MAX_AXES};
 use crate::word_map::WordMap;
@@ -19,13 +21,20 @@ keys! {
     /// A word of the program that is no axis value.
     WordFile {
         /// What it is: a sum of multiples of axes, each as the control would show it without this, such as `"2 * X"` (a
-        /// diameter) or `"J3 - J2"` (the angle of an arm against the horizontal). Of a linear axis a multiple of itself.
+        /// diameter) or `"J3 - J2"` (the angle of an arm against the horizontal). Of a linear axis a multiple of itself. Of a
+        /// letter that no axis has a multiple of `s`, the way of the tip in cuts: `"0.0333 * s"`, for an extruder E.
         is: Spanned<String>,
         /// Least and largest value of the word, mm or degrees, in coordinates of the machine; the travel of its axis holds
         /// besides.
         travel: Option<Spanned<[KeyedNumber; 2]>>,
     }
 }
+
+/// The way of the tip in cuts, in `is`.
+const WAY: &str = "s";
+
+/// Letters of words that may go with it.
+const ALONG: [&str; 7] = ["A", "B", "C", "E", "U", "V", "W"];
 
 impl Builder<'_> {
     /// What words make of the values of `axes`; none where each is its own. Limits of words are put to `limits`.
@@ -41,6 +50,9 @@ impl Builder<'_> {
         }
         let first = file.keys().next()?;
         for (name, word) in file {
+            if self.way_of_the_tip(&word.get_ref().is).is_some() {
+                continue;
+            }
             let Some(place) = axes.iter().position(|axis| axis.name == *name.get_ref()) else {
                 let name_text = excerpt(name.get_ref(), SHOWN);
                 let message =
@@ -62,6 +74,53 @@ impl Builder<'_> {
             self.fault("machine-axis-word", first.span(), message, help);
         }
         map.filter(|map| (0..axes.len()).any(|place| !map.is_plain(place)))
+    }
+
+    /// The word of no axis that goes with the way of the tip.
+    pub(super) fn along(&mut self, file: &MachineFile, axes: &[Axis]) -> Option<AlongWord> {
+        let mut found = None;
+        for (name, word) in &file.word {
+            let Some(per_way) = self.way_of_the_tip(&word.get_ref().is) else {
+                continue;
+            };
+            let letter = name.get_ref();
+            let drawn_back =
+                file.rewind.as_ref().is_some_and(|rewind| rewind.get_ref().retract_feed.is_some());
+            let lack = if axes.iter().any(|axis| axis.name == *letter) {
+                Some("it is the word of an axis")
+            } else if !ALONG.contains(&letter.as_str()) {
+                Some("E, U, V, W, A, B or C can be such a word")
+            } else if word.get_ref().travel.is_some() {
+                Some("it has no travel")
+            } else if found.is_some() {
+                Some("one word alone can go with the way of the tip")
+            } else if axes.len() >= MAX_AXES {
+                Some("there are as many axes as a block has words")
+            } else if drawn_back {
+                Some("[rewind] retract_feed would push out on the way back: leave it to rapid")
+            } else {
+                None
+            };
+            if let Some(lack) = lack {
+                let text = excerpt(letter, SHOWN);
+                let message = format!("[word.{text}] cannot go with the way of the tip: {lack}");
+                self.fault("machine-axis-word", name.span(), message, "");
+                continue;
+            }
+            found = Some(AlongWord { name: letter.clone(), per_way });
+        }
+        found
+    }
+
+    /// What `is` multiplies the way of the tip by, if it is a multiple of that.
+    fn way_of_the_tip(&self, is: &Spanned<String>) -> Option<f64> {
+        let expression = parse_expression(is.get_ref()).ok()?;
+        let form = expression.linear_form(&|name| self.values.get(name).copied())?;
+        let [(name, per_way)] = form.terms.as_slice() else {
+            return None;
+        };
+        let plain = name == WAY && form.constant == 0.0 && *per_way > 0.0;
+        plain.then_some(*per_way)
     }
 
     /// What each axis is multiplied by in the word of the axis at `place`.

@@ -9,6 +9,7 @@ mod feed;
 pub mod limits;
 mod rapids;
 
+use post_machine::along_word::AlongPrinter;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, LimitExcess};
 use post_machine::kinematics::Joints;
@@ -36,6 +37,9 @@ pub(crate) struct TimingStage<'a> {
     rapids: Rapids,
     /// Where the axes stand.
     last: Joints,
+    /// The word that goes with the way of the tip, and that way in cuts so far, mm.
+    along: Option<AlongPrinter>,
+    way: f64,
     statistics: Durations,
     low: LowFeeds,
     findings: Findings,
@@ -95,6 +99,8 @@ impl<'a> TimingStage<'a> {
             slowness: machine.slowness(),
             rapids: Rapids::new(machine, writes),
             last: Joints::default(),
+            along: AlongPrinter::new(machine, format),
+            way: 0.0,
             statistics: Durations::default(),
             low: LowFeeds::default(),
             findings: findings.clone(),
@@ -174,6 +180,10 @@ impl<'a> TimingStage<'a> {
 
     #[inline]
     fn block(&mut self, block: &mut MotionBlock) {
+        if let Some(along) = &self.along {
+            self.way += if block.kind.cuts() { block.way } else { 0.0 };
+            along.print(self.way, &mut block.words);
+        }
         if block.still {
             return;
         }

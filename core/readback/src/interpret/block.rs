@@ -121,7 +121,9 @@ pub(super) fn run(
         return Ok(());
     }
     control.within_spline(words)?;
+    let before = control.done.len();
     control.obey(words, &asked)?;
+    control.along_word(words, before)?;
     control.left_over(words)
 }
 

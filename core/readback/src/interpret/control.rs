@@ -161,6 +161,7 @@ impl ControlState {
             number: None,
             report: ReadReport::default(),
             done: Vec::new(),
+            along: None,
             solvers: vec![(0.0, solver)],
         };
         control.stand(&start(machine));

@@ -17,6 +17,7 @@
 //! | `flow`, `astray`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
 //! | `cycles`, `planes`, `frames`, `conversational` | cycles, tilted planes, shifts; Heidenhain's blocks |
 
+mod along;
 mod arcs;
 mod assigned;
 mod astray;

@@ -78,6 +78,7 @@ impl ControlState {
             && !self.hole
             && self.axes.are_cartesian()
             && self.machine.word_map.is_none()
+            && self.machine.along.is_none()
             && self.state.solver.chain().edge().is_none();
         let counted = match self.tip_words() {
             true => self.state.tcp && self.frames.plane.is_none(),

@@ -98,6 +98,8 @@ pub(super) struct ControlState {
     pub report: ReadReport,
     /// What was done since it was taken last.
     pub done: Vec<BlockEffect>,
+    /// The word that goes with the way of the tip, as it was written last.
+    pub(super) along: Option<f64>,
     /// Solvers by length, so that none is made twice.
     pub(super) solvers: Vec<(f64, Arc<Solver>)>,
 }

@@ -1,0 +1,98 @@
+//! Machines of one and two axes: they post what lies in their reach, and say by how much they miss the rest.
+
+use super::*;
+
+/// A drilling unit of a transfer machine: Z alone, and a table that is set between the holes.
+const UNIT: &str = "name = \"drilling unit\"\nchain = \"[w B' b Z (S) t]\"\n\
+    [tool]\ngauge = [0, 0, 200]\n\
+    [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-150, 0]\nmax_feed = 10000\n\
+    [axis.B]\nrotary = [0, 1, 0]\npoint = [0, 0, -400]\ncyclic = true\nindexed = 0\nstep = 30\nmax_feed = 3600\n\
+    [control]\ndialect = \"fanuc\"\ntcp = \"post\"\n[accuracy]\ntolerance = 0.01\naxis_tolerance = 0.05\n";
+
+/// A winder: the mandrel A turns, X leads the wire along it, 30 mm off its line.
+const WINDER: &str = "name = \"winder\"\nchain = \"[w A' b X t]\"\n\
+    [tool]\ngauge = [0, 0, 30]\nlength_axis = \"none\"\n\
+    [axis.X]\nlinear = [1, 0, 0]\ntravel = [-100, 100]\nmax_feed = 10000\n\
+    [axis.A]\nrotary = [1, 0, 0]\npoint = [0, 0, 0]\ncyclic = true\nmax_feed = 36000\n\
+    [control]\ndialect = \"linuxcnc\"\ntcp = \"post\"\npark = { X = -90, A = 0 }\n[accuracy]\ntolerance = 0.01\naxis_tolerance = 0.05\n";
+
+/// The run of a machine file of its own, with a tool of `length` mm.
+fn run(machine: &str, text: &str, length: &str) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let [file, part] = ["m.toml", "part.ncl"].map(|name| folder.path().join(name));
+    fs::write(&file, machine).unwrap();
+    fs::write(&part, text).unwrap();
+    let [file, part] = [&file, &part].map(|path| path.to_str().unwrap().to_owned());
+    post(&["-q", "--verify", "-m", &file, "--tool-length", length, "-o", "-", &part])
+}
+
+/// Where the blocks of a program of `machine` bring the tip.
+fn tips(machine: &str, program: &str, names: &[&str], length: f64) -> Vec<Pose> {
+    let model = Model::from_table(machine.parse().unwrap(), None);
+    let blocks = blocks(program, names, &[]);
+    blocks.iter().map(|block| model.pose(&block.words, length)).collect()
+}
+
+#[test]
+fn a_drilling_unit_drills_what_stands_before_it() {
+    let (azimuths, depths) = ([0.0f64, 60.0, -90.0], [3.0, -12.0]);
+    // B turns the part about a line 400 mm below: holes round it, 400 mm from that line.
+    let mut text = cl();
+    let point = |azimuth: f64, depth: f64| {
+        let (sine, cosine) = libm::sincos(azimuth.to_radians());
+        (
+            V::new(sine, 0.0, cosine) * (400.0 + depth) - V::new(0.0, 0.0, 400.0),
+            V::new(sine, 0.0, cosine),
+        )
+    };
+    for azimuth in azimuths {
+        let [above, into] = [20.0, depths[1]].map(|depth| point(azimuth, depth));
+        text = text.rapid(above.0, above.1).cut(into.0, into.1).rapid(above.0, above.1);
+    }
+    let made = run(UNIT, &text.end(), "120");
+    assert_eq!(made.code, 0, "{}", made.err);
+    let reached = tips(UNIT, &made.out, &["B", "Z"], 120.0);
+    for azimuth in azimuths {
+        let (tip, axis) = point(azimuth, depths[1]);
+        let hit = |pose: &Pose| (pose.tip - tip).norm() < 0.001 && angle(pose.axis, axis) < 1e-6;
+        assert!(reached.iter().any(hit), "{azimuth}\n{}", made.out);
+    }
+    // A hole beside the line of the spindle.
+    let beside =
+        cl().rapid(V::new(0.0, 0.0, 20.0), V::z()).cut(V::new(5.0, 0.0, -3.0), V::z()).end();
+    let said = run(UNIT, &beside, "120");
+    assert!(said.code == 1 && said.err.contains("misses it by 5.000"), "{}", said.err);
+    // On no position of the table.
+    let (tip, axis) = point(45.0, 3.0);
+    let between = cl().rapid(tip, axis).cut(point(45.0, -3.0).0, axis).end();
+    let said = run(UNIT, &between, "120");
+    assert_eq!(said.code, 1, "{}", said.out);
+}
+
+#[test]
+fn a_winder_winds_on_its_mandrel() {
+    let at = |turn: f64| {
+        let (sine, cosine) = libm::sincos(turn);
+        (V::new(2.0 * turn, 30.0 * sine, 30.0 * cosine), V::new(0.0, sine, cosine))
+    };
+    // Chords of 3 degrees stay within a hundredth of a mm of the mandrel.
+    let wind = |degrees: f64| {
+        let mut text = cl();
+        for step in 0..60 {
+            let (tip, axis) = at((f64::from(step) * degrees).to_radians());
+            text = text.cut(tip, axis);
+        }
+        text.end()
+    };
+    let made = run(WINDER, &wind(2.0), "0");
+    assert_eq!(made.code, 0, "{}", made.err);
+    let reached = tips(WINDER, &made.out, &["A", "X"], 0.0);
+    for step in [1, 17, 59] {
+        let (tip, axis) = at(f64::from(step).to_radians() * 2.0);
+        let hit = |pose: &Pose| (pose.tip - tip).norm() < 0.011 && angle(pose.axis, axis) < 9e-4;
+        assert!(reached.iter().any(hit), "{step}\n{}", made.out);
+    }
+    // A chord of 30 degrees cuts a mm deep into the mandrel, and the wire cannot go there.
+    let said = run(WINDER, &wind(30.0), "0");
+    assert!(said.code == 1 && said.err.contains("misses it by 1.02"), "{}", said.err);
+}

@@ -156,6 +156,16 @@ fn a_wall_that_is_higher_than_the_retract_is_gone_round() {
     assert_contains(&program, &["for the part at X0 Y0 Z0 alone".to_uppercase().as_str()]);
     let (again, _) = made(&folder, "sides.cls", &LINK);
     assert_eq!(program, again);
+    // Deeper than both facets it goes nowhere: what stands there nobody may have drawn.
+    let past = program.lines().find(|line| line.starts_with("G53 G0 X")).unwrap();
+    let at = past.find('Z').unwrap();
+    let end = at + past[at..].find(' ').unwrap();
+    let deep = program.replace(past, &format!("{}Z-300.000{}", &past[..at], &past[end..]));
+    fs::write(folder.path().join("deep.nc"), deep).unwrap();
+    let words = ["verify", "deep.nc", "-m", "m.toml", "--against", "sides.cls", "--posted"];
+    let held = post_in(folder.path(), &[&words, &LINK[..]].concat());
+    assert_eq!(held.code, 1, "{}", held.out);
+    assert_contains(&held.err, &["a rapid takes Z"]);
 }
 
 /// As far as nothing but height helps, the tool goes as much higher as the wall is, and keeps what is to be kept.

@@ -248,14 +248,12 @@ impl<'a> BlockStage<'a> {
         let Some(mut across) = self.across.take() else {
             return;
         };
-        if let Some(from) = &across.departed.take()
-            && let Some((depth, highest)) = self.shortened()
-        {
-            let crossing = Crossing { line, placer, from, node, depth, highest };
-            let best = match across.equip(self.machine, placer.solver()) {
-                true => self.way_across(&mut across, &crossing),
-                false => None,
-            };
+        if let Some(from) = &across.departed.take() {
+            let equipped = across.equip(self.machine, placer.solver());
+            let best = self.shortened().filter(|_| equipped).and_then(|(depth, highest)| {
+                let crossing = Crossing { line, placer, from, node, depth, highest };
+                self.way_across(&mut across, &crossing)
+            });
             match best {
                 Some(best) => {
                     self.lowered = Some(best.entry);

@@ -53,9 +53,9 @@ struct Edge {
 
 impl Edge {
     /// Edges of the same corners follow one another.
-    fn key(&self) -> [u64; 2] {
-        let [one, other] = self.ends.map(u64::from);
-        [one << 32 | other, u64::from(self.triangle) << 1 | u64::from(self.against)]
+    fn key(&self) -> u128 {
+        let [one, other] = self.ends.map(u128::from);
+        one << 96 | other << 64 | u128::from(self.triangle) << 1 | u128::from(self.against)
     }
 }
 

@@ -150,11 +150,12 @@ impl Room {
     /// A piece stays inside.
     pub fn holds(&self, piece: &Piece) -> bool {
         let [from, to] = &piece.ends;
+        // All axes at once, without a branch: what is no number is within nothing.
         let within = |place: usize| {
             let (low, high) = (self.low[place], self.high[place]);
-            low <= from[place] && from[place] <= high && low <= to[place] && to[place] <= high
+            (low <= from[place]) & (from[place] <= high) & (low <= to[place]) & (to[place] <= high)
         };
-        piece.stray <= self.stray && (0..MAX_AXES).all(within)
+        (0..MAX_AXES).fold(piece.stray <= self.stray, |all, place| all & within(place))
     }
 
     /// What it has in common with another.

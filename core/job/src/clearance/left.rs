@@ -127,6 +127,9 @@ pub(super) struct CutStock {
     /// Bodies besides the tool that move against it.
     others: Vec<Held>,
     cuts: BTreeMap<u32, ToolCut>,
+    /// What the tool in the spindle has cut, and what was left before.
+    chips: Volume,
+    began: Volume,
     rows: Vec<PairRow>,
     distances: u64,
 }
@@ -237,6 +240,8 @@ impl CutStock {
             tool,
             others,
             cuts,
+            chips: Volume::default(),
+            began: before,
             rows,
             distances,
         })
@@ -269,6 +274,7 @@ impl CutStock {
     /// Another tool is in the spindle; pairs that `proof` leaves out are left out here.
     pub fn change_tool(&mut self, machine: &Machine, tool: Option<&ToolShape<'_>>, proof: &Proof) {
         self.been.clear();
+        self.put_down();
         let cutting = tool.map(|tool| self.cutting(machine, tool, proof));
         self.tool = cutting;
     }
@@ -307,6 +313,16 @@ impl CutStock {
         });
         self.been = Been::new(&profile);
         CuttingTool { number, cutter, edge, parts }
+    }
+
+    /// Puts down what the tool in the spindle has cut.
+    fn put_down(&mut self) {
+        let after = self.field.volume();
+        let own = self.tool.as_ref().and_then(|tool| self.cuts.get_mut(&tool.number));
+        if let Some(own) = own {
+            own.add(self.chips, [self.began, after]);
+        }
+        (self.chips, self.began) = (Volume::default(), after);
     }
 
     fn row(&mut self, other: String) -> usize {
@@ -400,6 +416,7 @@ impl CutStock {
                 let chip = along::cut(&mut self.field, mounted, cutter, way);
                 let own = self.cuts.entry(tool.number).or_insert_with(|| ToolCut::new(tool.number));
                 own.take(&chip, against.motion.line);
+                self.chips += chip.volume;
             }
             None if cuts => self.field.doubt_all(),
             _ => {}
@@ -466,7 +483,8 @@ impl CutStock {
     }
 
     /// What came of it: rows of the pairs, distances that were computed, what is left.
-    pub fn finish(self) -> (Vec<PairRow>, u64, StockLeft) {
+    pub fn finish(mut self) -> (Vec<PairRow>, u64, StockLeft) {
+        self.put_down();
         let part = self.part.map(|(part, surface)| {
             let mut compared = self.field.compare(&part, &surface);
             compared.deepest.point += self.low;

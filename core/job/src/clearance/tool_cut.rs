@@ -32,9 +32,16 @@ impl ToolCut {
         Self { tool, volume: Volume::default(), depth, width }
     }
 
-    /// Takes what it cuts in a line.
+    /// Takes what all its cuts in a row came to: each by itself, and what was left before the first and behind the last.
+    pub(super) fn add(&mut self, chips: Volume, [before, after]: [Volume; 2]) {
+        self.volume += Volume {
+            at_least: chips.at_least.max(before.at_least - after.at_most),
+            at_most: chips.at_most.min(before.at_most - after.at_least),
+        };
+    }
+
+    /// Takes how far a cut in a line goes.
     pub(super) fn take(&mut self, chip: &Chip, line: u64) {
-        self.volume += chip.volume;
         let Some(engagement) = chip.engagement else { return };
         let longest = |known: &mut LongestAt, at_most: f64| {
             if at_most > known.at_most {

@@ -113,7 +113,6 @@ pub struct Proof {
     axes: Vec<Joint>,
     rules: Rules,
     bodies: Vec<Body>,
-    /// Those that are looked at first, then those that sleep.
     pairs: Vec<Pair>,
     sleep: Sleep,
     lately: Lately,
@@ -137,7 +136,7 @@ impl Proof {
                 }
             }
         }
-        let (sleep, lately) = (Sleep::none(pairs.len()), Lately::default());
+        let (sleep, lately) = (Sleep::default(), Lately::default());
         let axes = axes.to_vec();
         Self { axes, rules, bodies, pairs, sleep, lately, last: None, distances: 0 }
     }
@@ -181,7 +180,7 @@ impl Proof {
         &self.bodies
     }
 
-    /// What is known of each pair.
+    /// What is known of each pair, in the same order whatever was taken.
     pub fn results(&self) -> impl Iterator<Item = &PairResult> {
         self.pairs.iter().map(|pair| &pair.result)
     }
@@ -194,7 +193,7 @@ impl Proof {
     /// Another tool is in the spindle: what was known of distances does not hold any more.
     pub fn forget(&mut self) {
         self.pairs.iter_mut().for_each(Pair::forget);
-        self.sleep = Sleep::none(self.pairs.len());
+        self.sleep.end();
     }
 
     /// The distance of each pair where the axes stand on `joints`, what meshes enclose among it.
@@ -221,8 +220,9 @@ impl Proof {
         let whole = motion.way.whole();
         let sleeps = whole.as_ref().is_some_and(|whole| self.sleep.holds(whole));
         let Self { bodies, pairs, rules, distances, sleep, lately, .. } = self;
-        let awake = if sleeps { sleep.awake } else { pairs.len() };
-        for pair in &mut pairs[..awake] {
+        let count = if sleeps { sleep.awake.len() } else { pairs.len() };
+        for place in 0..count {
+            let pair = &mut pairs[if sleeps { sleep.awake[place] } else { place }];
             let [one, other] = pair.result.bodies.map(|place| &bodies[place]);
             if !looks(one, other) {
                 pair.forget();
@@ -237,7 +237,7 @@ impl Proof {
             *distances += pair.take(&trial, whole.as_ref());
         }
         if let Some(whole) = whole.as_ref().filter(|_| !sleeps) {
-            *sleep = Sleep::new(pairs, whole);
+            sleep.begin(pairs, whole);
         }
     }
 

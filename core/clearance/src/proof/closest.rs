@@ -1,6 +1,5 @@
 //! How near any two bodies come on each motion, for who shows that along the path.
 
-use super::room::Sleep;
 use super::{Body, Move, Proof, Trial};
 use crate::ALLOWANCE;
 
@@ -22,7 +21,7 @@ impl Proof {
         self.last = Some(to);
         let whole = motion.way.whole();
         self.lately.take(&to);
-        self.sleep = Sleep::none(self.pairs.len());
+        self.sleep.end();
         // Who was nearest is so again mostly: the others need not be told as closely then.
         self.pairs.sort_by(|one, other| one.result.nearest.0.total_cmp(&other.result.nearest.0));
         let Self { bodies, pairs, rules, distances, lately, .. } = self;

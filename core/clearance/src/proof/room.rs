@@ -177,36 +177,34 @@ impl Room {
 }
 
 /// Pairs that need not be looked at while the axes stay in a box that they have in common.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Sleep {
     /// None where nobody sleeps.
     room: Option<Room>,
-    /// How many pairs are looked at: those that follow sleep.
-    pub awake: usize,
+    /// Places of those that are looked at all the same.
+    pub awake: Vec<usize>,
 }
 
 impl Sleep {
-    /// All of so many pairs are looked at.
-    pub fn none(pairs: usize) -> Self {
-        Self { room: None, awake: pairs }
+    /// Nobody sleeps.
+    pub fn end(&mut self) {
+        self.room = None;
     }
 
-    /// Puts those pairs at the end whose rooms last, behind a motion on which all were looked at.
-    pub fn new(pairs: &mut [Pair], piece: &Piece) -> Self {
-        let (mut awake, mut common) = (pairs.len(), Room::everywhere());
-        let mut place = 0;
-        while place < awake {
-            let pair = &mut pairs[place];
-            let Some(room) = pair.room.filter(|room| room.outlasts(piece)) else {
-                place += 1;
-                continue;
-            };
-            pair.result.clear_by = pair.result.clear_by.min(room.left);
-            common.meet(&room);
-            awake -= 1;
-            pairs.swap(place, awake);
+    /// Those pairs sleep whose rooms last, behind a motion on which all were looked at.
+    pub fn begin(&mut self, pairs: &mut [Pair], piece: &Piece) {
+        self.awake.clear();
+        let mut common = Room::everywhere();
+        for (place, pair) in pairs.iter_mut().enumerate() {
+            match pair.room.as_ref().filter(|room| room.outlasts(piece)) {
+                Some(room) => {
+                    pair.result.clear_by = pair.result.clear_by.min(room.left);
+                    common.meet(room);
+                }
+                None => self.awake.push(place),
+            }
         }
-        Self { room: (awake < pairs.len()).then_some(common), awake }
+        self.room = (self.awake.len() < pairs.len()).then_some(common);
     }
 
     /// Those that sleep need not be looked at on a piece.

@@ -379,6 +379,7 @@ fn pairs_that_sleep_are_as_far_apart_as_is_proven() {
         let rules = Rules { keep: rng.order(-2.0, 1.0), rapid: rng.order(-2.0, 1.0), within: 0.01 };
         let all = pieces.iter().map(body).collect();
         let mut proof = Proof::new(joints, all, rules, |_, _| true);
+        let order: Vec<_> = proof.results().map(|result| result.bodies).collect();
         let mut sampled = std::collections::BTreeMap::new();
         let mut from = machine.values(&mut rng);
         for motion in 0..120 {
@@ -419,6 +420,8 @@ fn pairs_that_sleep_are_as_far_apart_as_is_proven() {
             }
             from = to;
         }
+        // Whoever compares results of two motions counts on their order.
+        assert!(proof.results().map(|result| result.bodies).eq(order));
         distances += proof.distances();
         for result in proof.results() {
             let truth = sampled[&result.bodies];

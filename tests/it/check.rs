@@ -637,6 +637,35 @@ fn the_commissioning_program_moves_one_axis_at_a_time() {
     }
 }
 
+/// Where words hold several axes, or multiples, one axis moves all the same: those of the others follow it. The axes are worked
+/// out of the words here.
+#[test]
+fn the_commissioning_program_moves_one_axis_where_words_are_coupled() {
+    let names = ["X", "Y", "Z", "B", "C"];
+    let sets = ["--set", "word.B.is=B - 0.5 * C", "--set", "word.X.is=2 * X"];
+    let run = post(&[&["check", "bc-fork", "--commission", "-o", "-"][..], &sets].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let blocks = blocks(&run.out, &names);
+    readings_are_those_in_force(&blocks, &names);
+    let axes = |now: &BTreeMap<String, f64>| {
+        let word = |name: &str| now[name];
+        [word("X") / 2.0, word("Y"), word("Z"), word("B") + 0.5 * word("C"), word("C")]
+    };
+    let whole = blocks.iter().filter(|(_, now)| now.len() == names.len());
+    let stood: Vec<[f64; 5]> = whole.map(|(_, now)| axes(now)).collect();
+    let mut ways = [0.0f64; 5];
+    for pair in stood.windows(2) {
+        let moved: Vec<usize> =
+            (0..5).filter(|axis| (pair[1][*axis] - pair[0][*axis]).abs() > 0.0015).collect();
+        assert!(moved.len() <= 1, "{moved:?} move:\n{}", run.out);
+        for axis in moved {
+            ways[axis] = ways[axis].max((pair[1][axis] - pair[0][axis]).abs());
+        }
+    }
+    assert!(ways.iter().all(|way| *way > 10.0), "{ways:?}");
+    assert!(ways[0] <= 100.0 + 1e-9, "X goes farther than is told: {}", ways[0]);
+}
+
 /// Every remark that tells the display, over its lines, against the words.
 fn readings_are_those_in_force(blocks: &[(String, BTreeMap<String, f64>)], names: &[&str]) {
     let mut told = 0;

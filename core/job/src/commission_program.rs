@@ -197,19 +197,24 @@ impl Writer<'_> {
     }
 
     fn values(&self, joints: &Joints, from_start: bool) -> Vec<f64> {
+        let mut shows = Joints::default();
+        for (place, axis) in self.machine.axes.iter().enumerate() {
+            shows[place] = if axis.joint.rotary || !from_start {
+                shown(axis, joints[place])
+            } else {
+                joints[place] - self.start[place]
+            };
+        }
+        // Where words are no axis values, those of other axes follow.
+        let words = self.machine.word_map.as_ref().map_or(shows, |map| map.words(&shows));
         let order = self.order.iter().zip(&self.format.words);
-        order
-            .map(|(place, decimals)| {
-                let axis = &self.machine.axes[*place];
-                let value = if axis.joint.rotary || !from_start {
-                    shown(axis, joints[*place])
-                } else {
-                    joints[*place] - self.start[*place]
-                };
-                let scale = (0..*decimals).fold(1.0, |scale, _| scale * 10.0);
-                libm::rint(value / self.length(axis) * scale) / scale + 0.0
-            })
-            .collect()
+        let values = order.map(|(place, decimals)| {
+            let scale = (0..*decimals).fold(1.0, |scale, _| scale * 10.0);
+            let length = self.length(&self.machine.axes[*place]);
+            libm::rint(words[*place] / length * scale) / scale + 0.0
+        });
+        // A word that goes with the way of the tip stands still.
+        values.chain(self.machine.along.iter().map(|_| 0.0)).collect()
     }
 
     /// `X 30.000 Y 0.000 …`.

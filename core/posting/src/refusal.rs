@@ -27,7 +27,7 @@ pub(crate) fn depth_counts_down(machine: &Machine) -> Option<Diagnostic> {
                 axis.name, machine.name
             ),
         )
-        .help("ISO 841 has it count away from the part, on whichever side it moves: leave `reversed` out, or turn its direction round, if that is what the control shows. An axis that does count towards the part (Z before a second spindle): [tool] length_axis = \"none\", where the control adds no length and the work offset is measured with the tool")
+        .help("ISO 841 has it count away from the part, on whichever side it moves: so its direction, or `reversed`, would have to say. An axis that does count towards the part (Z before a second spindle): [tool] length_axis = \"none\", where the control adds no length and the work offset is measured with the tool")
     })
 }
 

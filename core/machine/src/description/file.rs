@@ -499,7 +499,7 @@ keys! {
         /// What F means under inverse time; minutes if not said.
         inverse_time: InverseTime,
         /// The length that the control divides by F when it does not keep the tip; if not said as the dialect has it:
-        /// combined for Fanuc, Mazak, Mitsubishi, Okuma and Hurco, linear for the others.
+        /// combined for Brother, Fanuc, Hurco, Mazak, Mitsubishi, Okuma and Syntec, linear for the others.
         feed_length: Option<FeedLength>,
         /// The length that the control divides by F when it keeps the tip; tip if not said.
         tcp_feed_length: TcpFeedLength,

@@ -100,11 +100,18 @@ pub(crate) struct CurvePolicy {
     writes: Capabilities,
     /// The control keeps the tip.
     tcp: bool,
+    /// A word goes with the way, of which the points of a spline say nothing.
+    along: bool,
 }
 
 impl CurvePolicy {
     pub(crate) fn new(machine: &Machine, writes: Capabilities) -> Self {
-        Self { arcs: machine.control.arcs, writes, tcp: machine.control.tcp == Tcp::Control }
+        Self {
+            arcs: machine.control.arcs,
+            writes,
+            tcp: machine.control.tcp == Tcp::Control,
+            along: machine.along.is_some(),
+        }
     }
 
     /// Arcs about that axis of the words (0 is X), which end off the plane of their start or not, in a tilted plane or
@@ -147,6 +154,7 @@ impl CurvePolicy {
             false => Capabilities::SPLINE,
         };
         self.arcs.keep
+            && !self.along
             && self.writes.has(needs)
             && end.pace != MoveFeed::Rapid
             && (2..=MOST_CHORDS).contains(&chords)

@@ -166,7 +166,7 @@ fn check_tells_what_words_do() {
 #[test]
 fn a_word_goes_with_the_way_of_the_tip() {
     let per_mm = 0.0333;
-    let setup = || on("xyzac-trt").file(format!("[word.U]\nis = \"{per_mm} * s\"\n"));
+    let setup = || on("xyzac-trt").long(50.0).file(format!("[word.U]\nis = \"{per_mm} * s\"\n"));
     let text = turning_cuts();
     let made = setup().made(&text);
     let word = |line: &str| {
@@ -187,7 +187,7 @@ fn a_word_goes_with_the_way_of_the_tip() {
     }
     assert!(cuts > 4 && way > 10.0, "{cuts} {way}");
     // The same path without it.
-    let plain = on("xyzac-trt").made(&text);
+    let plain = on("xyzac-trt").long(50.0).made(&text);
     assert_eq!(plain.blocks.len(), made.blocks.len());
     // Read back, and with one word spoilt.
     let folder = tempfile::tempdir().unwrap();
@@ -208,7 +208,7 @@ fn a_word_goes_with_the_way_of_the_tip() {
             "--against",
             &part,
             "--tool-length",
-            "100",
+            "50",
             "--set",
             "control.planes=false",
         ])

@@ -148,7 +148,7 @@ impl Planar {
                 Some(carrier) => {
                     self.carried(chain, pose, &mut set.joints, (carrier, last), allowed)
                 }
-                None => Ok(vec![self.pointing(chain, pose, set.joints, last, allowed)]),
+                None => Ok(vec![PlanarSolution { joints: set.joints, side: None }]),
             };
             let placed = ways.map(|ways| {
                 for mut way in ways {
@@ -168,33 +168,6 @@ impl Planar {
             }
         }
         if found.is_empty() { Err(fault) } else { Ok(found) }
-    }
-
-    /// The axes where they point the tool as in `joints`. Between two points that the chain reaches the tip then lies
-    /// beside the plane: where the tool axis may be off by as much, the carrier brings the tip in.
-    fn pointing(
-        &self,
-        chain: &Chain,
-        pose: &Pose,
-        joints: Joints,
-        last: &Joints,
-        allowed: AllowedMiss,
-    ) -> PlanarSolution {
-        let mut placed = joints;
-        numeric::approach(chain, &self.linear, pose.tip, &mut placed);
-        let beside = (chain.forward(&placed).tip - pose.tip).norm();
-        let within = |way: &PlanarSolution| {
-            let mut joints = way.joints;
-            numeric::approach(chain, &self.linear, pose.tip, &mut joints);
-            let leans = angle(chain.forward(&joints).axis, pose.axis);
-            leans <= allowed.axis && missed(chain, pose, &joints, allowed).is_none()
-        };
-        let carrier = self.carrier.filter(|_| beside > POLE.max(MEETS * allowed.tip));
-        let ways = carrier.and_then(|carrier| {
-            self.carried(chain, pose, &mut joints.clone(), (carrier, last), allowed).ok()
-        });
-        let brought = ways.into_iter().flatten().find(within);
-        PlanarSolution { side: None, ..brought.unwrap_or(PlanarSolution { joints, side: None }) }
     }
 
     /// The ways to bring the tip into the plane by the carrier, the others standing as in `joints`.

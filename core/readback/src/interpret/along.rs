@@ -51,7 +51,12 @@ impl ControlState {
         let went = self.along.unwrap_or(0.0) - stood.unwrap_or(0.0);
         // The first word says where it begins.
         let first = said.is_some() && stood.is_none() && asked == 0.0;
-        let fed_rapid = went == 0.0 && self.machine.control.rapid == Some(Rapid::Linear);
+        // A rapid may be written as a feed move: where the machine file asks for it, and while the control keeps the tip.
+        let fed = match self.machine.control.rapid {
+            Some(rapid) => rapid == Rapid::Linear,
+            None => self.state.tcp,
+        };
+        let fed_rapid = went == 0.0 && fed;
         if first || fed_rapid || libm::fabs(went - asked) <= ROUNDED + SHARE * asked {
             return Ok(());
         }

@@ -11,6 +11,9 @@ use nalgebra::{Rotation3, Vector3};
 use post_testruns::read_back::{Model, blocks, table};
 use serde_json::Value;
 
+/// Rotary axes place the tip.
+const ROBOTS: [&str; 2] = ["irb4600-rail", "kr6-r700"];
+
 /// `post place` with these words on a CL file of that text.
 fn place_text(arguments: &[&str], text: &str) -> Run {
     let folder = tempfile::tempdir().unwrap();
@@ -64,7 +67,10 @@ fn left(summary: &Value, names: &[&str]) -> f64 {
 fn every_machine_of_the_library_is_placed_from_where_it_does_not_fit() {
     let mut moved = 0;
     // Where rotary axes place the tip, no mount follows from travel: that is refused, see below.
-    for row in LIBRARY.iter().filter(|row| !row.machine.starts_with("lathe-xzc")) {
+    for row in LIBRARY
+        .iter()
+        .filter(|row| !row.machine.starts_with("lathe-xzc") && !ROBOTS.contains(&row.machine))
+    {
         // What legs reach is held where the program is made, and not known where a mount is looked for.
         let machine = root().join("machines").join(format!("{}.toml", row.machine));
         if fs::read_to_string(machine).unwrap().contains("[[leg]]") {

@@ -96,24 +96,3 @@ fn a_rail_stands_still_where_the_arm_reaches() {
     let far = posted("irb4600-rail", 100.0, &holes(700.0));
     assert!(span(&far, 0) > 1000.0, "the rail goes {}", span(&far, 0));
 }
-
-/// What a robot's program is written in for its own control is not read back, and it is said so.
-#[test]
-fn programs_of_rapid_are_refused_by_who_reads() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("dome.mod");
-    let out = out.to_str().unwrap();
-    let cl = "tests/machines/kr6-r700.cls";
-    let rapid = ["-m", "kr6-r700", "--set", "control.dialect=rapid", "--tool-length", "60"];
-    let run = post(&[&rapid[..], &["-q", "-o", out, cl]].concat());
-    assert_eq!(run.code, 0, "{}", run.err);
-    let text = fs::read_to_string(out).unwrap();
-    assert!(text.lines().any(|line| {
-        line.starts_with("MoveAbsJ [[") && line.contains("],[9E9,") && line.contains("\\T:=")
-    }));
-    for verb in [&["verify", out, "--against", cl][..], &["predict", out]] {
-        let run = post(&[verb, &rapid[..4]].concat());
-        assert_eq!(run.code, 1, "{}", run.out);
-        assert!(run.err.contains("tells no vocabulary"), "{}", run.err);
-    }
-}

@@ -254,7 +254,9 @@ fn mount_inside(machine: &Machine, over: &OverTravel) -> Option<String> {
         None => false,
     };
     let shared = axis.second.is_some() || machine.axes.iter().any(with);
-    if axis.joint.rotary || shared || between.any(|axis| axis.joint.rotary) {
+    // A rail does not place the tip alone.
+    let alone = || machine.solver(0.0).is_ok_and(|solver| solver.surplus().is_empty());
+    if axis.joint.rotary || shared || between.any(|axis| axis.joint.rotary) || !alone() {
         return None;
     }
     // A little farther than the limit, so that no rounding passes it.
@@ -483,14 +485,19 @@ pub(crate) fn stuck(
             ),
         )
         .help(match machine.axes[*joint].travel {
-            Some(_) => "its travel ends here and the other solution lies far away: retract before this line, or set the part differently",
-            None => "the other solution lies far away: retract before this line, or set the part differently",
+            Some(travel) if ends_near(travel, *from) || ends_near(travel, *to) => "its travel ends here and the other solution lies far away: retract before this line, or set the part differently",
+            _ => "the other solution lies far away: retract before this line, or set the part differently",
         }),
         LineariseError::Model(message) => Diagnostic::error(
             "model",
             format!("the error model {} cannot answer: {message}", machine.accuracy.model),
         ),
     }
+}
+
+/// An end of the travel is no farther than a degree.
+fn ends_near([least, most]: [f64; 2], value: f64) -> bool {
+    (value - least).min(most - value) < 1f64.to_radians()
 }
 
 /// A cut from a point that nothing of the program leads to.

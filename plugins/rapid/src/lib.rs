@@ -10,8 +10,11 @@ use post_plugin::{
 /// Axes of the arm, and of what stands beside it.
 const AXES: usize = 6;
 
-/// Where the value of an axis word stands in a `jointtarget`: `A1` to `A6` or `J1` to `J6`, then `E1` to `E6`.
+/// Where the value of an axis word stands in a `jointtarget`.
 type Place = usize;
+
+/// Names of axes, by their places: those of the arm, then those beside it.
+const NAMES: [&str; 9] = ["A", "B", "C", "U", "V", "W", "X", "Y", "Z"];
 
 /// Components of a `jointtarget`, in that order.
 const COMPONENTS: [&str; 2 * AXES] = [
@@ -78,13 +81,7 @@ fn identifier(name: &str) -> String {
 
 /// Where an axis stands in a `jointtarget`.
 fn place(name: &str) -> Option<Place> {
-    let (kind, number) = name.split_at_checked(1)?;
-    let number: usize = number.parse().ok().filter(|number| (1..=AXES).contains(number))?;
-    match kind {
-        "A" | "J" => Some(number - 1),
-        "E" => Some(AXES + number - 1),
-        _ => None,
-    }
+    NAMES.iter().position(|known| *known == name)
 }
 
 impl Dialect for Rapid {
@@ -105,7 +102,7 @@ impl Dialect for Rapid {
         for word in setup.words {
             let name = word.name;
             places.push(place(name).ok_or_else(|| {
-                format!("axis {name}: a robot of ABB has the axes A1 to A6 (or J1 to J6), and E1 to E6 beside it (rails, positioners): rename the axis, in the chain too")
+                format!("axis {name}: A B C U V W are the axes 1 to 6 of a robot, X Y Z those beside it (eax_a to eax_c): rename the axis, in the chain too")
             })?);
             if word.wrapped {
                 return Err(format!(

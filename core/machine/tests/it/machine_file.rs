@@ -232,13 +232,6 @@ const SLIPS: &[Slip] = &[
     ("rotary = [1, 0, 0]", "rotary = [0, 0, -2]", CHAIN, "C and A turn about parallel axes", true),
     (
         "b Y X Z (S) t]\"",
-        "b Y X Z B t]\"\naxis.B = { rotary = [0, 1, 0], point = [0, 0, 0], cyclic = true }",
-        "2 \"[w C' A' b Y X Z B t]\"",
-        "3 rotary axes move at once (C, A, B)",
-        true,
-    ),
-    (
-        "b Y X Z (S) t]\"",
         "b Y X Z U t]\"\naxis.U = { linear = [0, 0, 1], travel = [0, 1] }",
         "2 \"[w C' A' b Y X Z U t]\"",
         "4 linear axes",

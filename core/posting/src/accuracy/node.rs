@@ -77,7 +77,7 @@ pub enum PlacementError {
     OverTravel {
         /// Which axis, by how much.
         over: OverTravel,
-        /// How many solutions there were.
+        /// How many solutions there were; 0 on the way between two places, where one was looked for.
         tried: usize,
     },
     /// A solution does not stand up to the forward product.

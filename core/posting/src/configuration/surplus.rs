@@ -22,7 +22,7 @@ const MOST_TURNS: usize = 6;
 const PLACES: usize = 8;
 
 /// Solutions that are followed, those nearest to where the axes stand.
-const MOST_STANDS: usize = 96;
+const MOST_STANDS: usize = 160;
 
 /// An axis that stands at the end of its travel stands so far inside of it, radians or mm: between two points it may go a
 /// little farther than at both.
@@ -32,7 +32,7 @@ const INSIDE: f64 = 2e-3;
 const MOST_CONTINUED: usize = 8;
 
 /// Up to such a turn a cut is taken to come through, away from the ends of travel, radians.
-const SURE: f64 = 0.1;
+const SURE: f64 = 0.05;
 
 /// Set in the branch of states whose rails, or else a positioner, go along with the tool.
 pub(super) const ALONG: u8 = 1 << 6;

@@ -59,19 +59,10 @@ pub(super) fn test(
     if let Err(fault) = plugin.dialect(&setup) {
         // A control that always keeps the tip, or a dialect for nothing else.
         setup.tcp = true;
-        if plugin.dialect(&setup).is_ok() {
-            case.note(format!(
-                "all cases are under TCP, since it refuses to open without: {fault}"
-            ));
-        } else {
-            setup = of_a_robot(five_axes(options));
-            if plugin.dialect(&setup).is_err() {
-                return Err(fault);
-            }
-            case.note(format!(
-                "all cases have the axes of a robot, since it refuses others: {fault}"
-            ));
+        if plugin.dialect(&setup).is_err() {
+            return Err(fault);
         }
+        case.note(format!("all cases are under TCP, since it refuses to open without: {fault}"));
     }
     let format = plugin.dialect(&setup)?.format().clone();
     let mut left_out = Vec::new();
@@ -133,14 +124,6 @@ fn five_axes(options: &[(String, GivenValue)]) -> ProgramSetup {
         options: options.to_owned(),
         ..ProgramSetup::default()
     }
-}
-
-/// The same axes as those of a robot's arm and beside it.
-fn of_a_robot(mut setup: ProgramSetup) -> ProgramSetup {
-    for (word, name) in setup.words.iter_mut().zip(["E1", "E2", "E3", "J1", "J2"]) {
-        word.name = name.to_owned();
-    }
-    setup
 }
 
 /// Under another setting than the `plain` program's, if it opens there: the program says so to the control, and what is

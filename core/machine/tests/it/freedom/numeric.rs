@@ -328,6 +328,10 @@ fn steps_are_those_of_whole_matrices() {
             let leading = edged.then(|| across(&mut rng, reference.axis));
             let chain = reference.chain().with_edge(leading);
             let solver = Solver::new(chain.clone(), &machine.free, machine.held).unwrap();
+            if !solver.surplus().is_empty() {
+                // Some of its joints stand.
+                continue;
+            }
             let q = machine.values(&mut rng);
             let (tip, axis) = reference.forward(&q);
             let edge = leading.map_or_else(Vector3::zeros, |edge| reference.taken(&q, edge));

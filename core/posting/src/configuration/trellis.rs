@@ -253,14 +253,7 @@ impl Trellis {
         let first = self.states.len();
         let ways = self.ways(&target, kind);
         if kind == ArrivalKind::Cut && !placer.solver().closed_form() {
-            let range = before.clone().unwrap_or(0..0);
-            if placer.solver().planar() {
-                self.go_on_in_plane(placer, motion, range, judge);
-            } else if placer.solver().surplus().is_empty() {
-                self.search_on(placer, &target, range, judge);
-            } else {
-                self.surplus_on(placer, motion, range, judge);
-            }
+            self.search_cut(placer, motion, before.clone().unwrap_or(0..0), judge);
         }
         let found = if self.states.len() > first {
             // What other solutions there are is nothing to a cut, and costly to find out.
@@ -566,6 +559,23 @@ impl Trellis {
                 }
             }
             self.states.truncate(from);
+        }
+    }
+
+    /// Continues each state in a cut without a closed form.
+    fn search_cut(
+        &mut self,
+        placer: &Placer,
+        motion: &StraightMove,
+        before: std::ops::Range<usize>,
+        judge: &mut dyn CutChecker,
+    ) {
+        if placer.solver().planar() {
+            self.go_on_in_plane(placer, motion, before, judge);
+        } else if placer.solver().surplus().is_empty() {
+            self.search_on(placer, &pose(motion), before, judge);
+        } else {
+            self.surplus_on(placer, motion, before, judge);
         }
     }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use common::{check_numbers, post, read_json, root};
 use post_testkit::shared;
-use post_testruns::read_back::{Model, Point, V, angle, blocks, points, table};
+use post_testruns::read_back::{Model, Point, V, angle, blocks, points, table, unrolled};
 
 /// A machine with its program, `tests/machines/<machine>.<ending>`, and the one that it must refuse,
 /// `tests/machines/<machine>.refused.<ending>`.
@@ -49,6 +49,7 @@ pub const LIBRARY: &[Row] = &[
     row("irb4600-rail", "cls", 100.0, "out-of-reach"),
     row("kr6-r700", "cls", 60.0, "out-of-reach"),
     row("lathe-xzc-face", "cls", 60.0, "out-of-reach"),
+    row("lathe-xzc-polar", "cls", 60.0, "out-of-reach"),
     row("lathe-xzc-radial", "cls", 60.0, "out-of-reach"),
     row("linear-delta", "cls", 40.0, "over-travel"),
     row("linuxcnc-5axis", "cls", 100.0, "over-travel"),
@@ -149,7 +150,8 @@ fn read_back(row: &Row, points: &[Point], program: &str) -> Vec<String> {
         .flatten()
         .filter_map(|head| Some(table["head"][head.as_str()].get("word")?.as_str()?.to_owned()))
         .collect();
-    let blocks = blocks(program, &names, &swap);
+    let polar = table.get("mode").is_some().then(|| unrolled(program, "C", 1.0));
+    let blocks = blocks(polar.as_deref().unwrap_or(program), &names, &swap);
     let mut faults = Vec::new();
     let poses: Vec<_> =
         blocks.iter().map(|block| models[block.swaps].pose(&block.words, row.length)).collect();

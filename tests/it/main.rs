@@ -27,6 +27,7 @@ mod cycle_time;
 mod dialects;
 mod diff;
 mod drives;
+mod face;
 mod files;
 mod frame;
 mod guide;

@@ -11,7 +11,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{DialectSession, ModelSession};
 use post_posting::plan::PlanWatch;
-use post_posting::preview::{FilePreview, PreviewPass, wants_planes};
+use post_posting::preview::{self, FilePreview, PreviewPass};
 use post_posting::program::ReadingOptions;
 use post_posting::report::{PluginUse, PostingReport};
 use post_posting::{Observer, PathShift, Post, PostingRequest, ProgramPreview, TextSink};
@@ -231,19 +231,19 @@ pub fn file_preview(
     machine: &Machine,
     dialect: &impl DialectSession,
 ) -> Result<Option<Arc<FilePreview>>, Failure> {
-    if !wants_planes(machine, dialect.capabilities()) {
+    if !preview::is_wanted(machine, dialect.capabilities()) {
         return Ok(None);
     }
     let input = source.open()?;
     let reading = posting_request(arguments, &input).reading;
-    Ok(Some(preview(input, machine, reading)?))
+    Ok(Some(first_pass(input, machine, reading)?))
 }
 
 /// The first pass over a CL file.
 ///
 /// # Errors
 /// It cannot be read. What is wrong with its records is said when its program is made.
-pub fn preview(
+pub fn first_pass(
     input: ClInput,
     machine: &Machine,
     reading: ReadingOptions,

@@ -27,6 +27,15 @@ impl WordMap {
         sound.then_some(Self { rows, inverse })
     }
 
+    /// The map of words that are multiples of their own axes, by their places in the chain; none where all are one.
+    pub(crate) fn multiples(factors: Joints) -> Option<Self> {
+        let mut rows = [Joints::default(); MAX_AXES];
+        for (place, row) in rows.iter_mut().enumerate() {
+            row[place] = factors[place];
+        }
+        Self::new(rows).filter(|_| factors.iter().any(|factor| *factor != 1.0))
+    }
+
     /// Words of axis values.
     pub fn words(&self, values: &Joints) -> Joints {
         (self.rows * nalgebra::SVector::from(*values)).into()

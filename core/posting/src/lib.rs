@@ -22,6 +22,7 @@ mod configuration;
 pub mod curve;
 mod emit;
 pub mod expand;
+pub mod faces;
 mod findings;
 mod job_facts;
 mod mount_bounds;

@@ -57,10 +57,10 @@ impl<'m> MountBounds<'m> {
     }
 
     fn swap(&mut self, name: &str) {
-        let Some(head) = self.machine.head(name) else {
+        let Some(head) = self.machine.changed_to(name) else {
             return;
         };
-        self.head = &head.machine;
+        self.head = head;
         self.last = None;
         let known = self.rooms.iter().position(|(machine, _)| std::ptr::eq(*machine, self.head));
         self.at = known.unwrap_or(self.rooms.len());

@@ -22,7 +22,7 @@ use crate::job_facts::JobFacts;
 use crate::observer::{Observer, Observers, TextSink};
 use crate::part_anywhere;
 use crate::plan::{PlanStage, PlanWatch};
-use crate::preview::{FilePreview, wants_planes};
+use crate::preview::{self, FilePreview, wants_planes};
 use crate::program::{ClInterpreter, MoveFeed, ProgramStep, ReadingOptions};
 use crate::refusal;
 use crate::report::{AxisRange, PostingReport, ReportedDeviation, WaysAcross};
@@ -144,7 +144,7 @@ impl PostStages<'_> {
         let mut lines = BatchSink::new(lines, &mut to_configuration);
         match work {
             StageInput::Take(steps) => expand.take(steps, &mut lines),
-            StageInput::Finish(_) => expand.finish(&mut lines),
+            StageInput::Finish(line) => expand.finish(line, &mut lines),
         }
         // From the first stage to the last: what a stage still holds goes on before the next stage is finished.
         lines.flush();
@@ -202,13 +202,14 @@ impl<'a> Post<'a> {
             .or_else(|| refusal::no_way_off(machine))
             .or_else(|| refusal::retract_not_said(machine, dialect.capabilities()))
             .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()))
-            .or_else(|| refusal::no_instead(machine, dialect.capabilities()));
+            .or_else(|| refusal::no_instead(machine, dialect.capabilities()))
+            .or_else(|| refusal::no_word_letter(machine, dialect.capabilities()));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }
         let writes = dialect.capabilities();
         let planes = wants_planes(machine, writes);
-        let ahead = job.ahead.filter(|_| planes);
+        let ahead = job.ahead.filter(|_| preview::is_wanted(machine, writes));
         let findings = Findings::new(job.reading.files());
         let expand =
             ExpandStage::new(machine, job.reading.chord_tolerance, writes, ahead, &findings);

@@ -11,6 +11,7 @@ use post_grammar::{GotoRun, Record};
 use post_machine::description::Machine;
 use post_plugin::Capabilities;
 
+use crate::faces::{FaceFinder, FaceRange};
 use crate::program::{ClInterpreter, Command, MoveFeed, ProgramStep, ReadingOptions, StraightMove};
 
 /// Stretches that are remembered; of a file with more, the ones after are not known.
@@ -24,6 +25,8 @@ const SAME: f64 = 1e-9;
 pub struct FilePreview {
     /// Where the tool axis stays, in the order of the lines.
     pub still: Vec<FixedAxisRange>,
+    /// What is milled on faces, the part turning, in the order of the lines.
+    pub faces: Vec<FaceRange>,
 }
 
 /// Lines of a CL file between two places where the tool leaves the part, on which its axis stays.
@@ -43,11 +46,18 @@ pub fn wants_planes(machine: &Machine, writes: Capabilities) -> bool {
         && machine.wants_planes(writes.has(Capabilities::CYCLE_IN_PLANE))
 }
 
+/// A first pass is to be made: for planes, or for a mode of the control.
+pub fn is_wanted(machine: &Machine, writes: Capabilities) -> bool {
+    wants_planes(machine, writes) || machine.in_face().is_some()
+}
+
 /// The first pass.
 #[derive(Debug)]
 pub struct PreviewPass {
     interpreter: ClInterpreter,
     still: FixedAxisFinder,
+    /// What is milled on faces; none where no mode of the control asks for it.
+    faces: Option<FaceFinder>,
 }
 
 impl PreviewPass {
@@ -56,17 +66,24 @@ impl PreviewPass {
         Self {
             interpreter: ClInterpreter::new(reading.on(machine)),
             still: FixedAxisFinder::default(),
+            faces: FaceFinder::new(machine),
         }
     }
 
     /// Takes a record.
     #[inline]
     pub fn record(&mut self, record: &Record<'_>) {
-        let still = &mut self.still;
+        let (still, faces) = (&mut self.still, &mut self.faces);
+        let mut take = |step: ProgramStep| {
+            still.step(record.line, &step);
+            if let Some(faces) = faces {
+                faces.step(record.line, &step);
+            }
+        };
         if self.interpreter.file_begins(record.line) {
-            self.interpreter.begin_file(&mut |step| still.step(record.line, &step));
+            self.interpreter.begin_file(&mut take);
         }
-        self.interpreter.record(record, &mut |step| still.step(record.line, &step));
+        self.interpreter.record(record, &mut take);
         if self.interpreter.has_findings() {
             // They are reported when the program is made.
             self.interpreter.take_findings();
@@ -77,7 +94,9 @@ impl PreviewPass {
     pub fn gotos(&mut self, run: &GotoRun, text: &[u8]) {
         let mut place = 0;
         while place < run.count() {
-            place = self.plain_gotos(run, place);
+            if self.faces.is_none() {
+                place = self.plain_gotos(run, place);
+            }
             if place < run.count() {
                 self.record(&run.record(place, text));
                 place += 1;
@@ -108,12 +127,13 @@ impl PreviewPass {
 
     /// Plain `GOTO`s tell nothing from here on, up to the next other record, but where the last of them leads.
     pub fn passes_gotos(&self) -> bool {
-        self.still.turns && self.interpreter.plain_pace().is_some()
+        self.still.turns && self.faces.is_none() && self.interpreter.plain_pace().is_some()
     }
 
     /// The file has ended.
     pub fn finish(self) -> FilePreview {
-        FilePreview { still: self.still.finish() }
+        let faces = self.faces.map(FaceFinder::finish).unwrap_or_default();
+        FilePreview { still: self.still.finish(), faces }
     }
 }
 

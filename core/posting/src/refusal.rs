@@ -405,6 +405,19 @@ pub(crate) fn no_instead(machine: &Machine, writes: Capabilities) -> Option<Diag
     })
 }
 
+/// The machine file has a mode of the control in which a word is another coordinate, and the dialect cannot write that.
+pub(crate) fn no_word_letter(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
+    let lacks = machine.in_face().is_some() && !writes.has(Capabilities::WORD_LETTER);
+    lacks.then(|| {
+        let message = format!(
+            "[mode.face] of {}: the dialect {} has no polar interpolation",
+            machine.name, machine.control.dialect
+        );
+        Diagnostic::error("dialect", message)
+            .help("leave [mode.face] out: faces are written in words of the axes then")
+    })
+}
+
 /// The machine file asks the control to smooth, and the dialect has no words for it.
 pub(crate) fn no_smoothing(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
     let own = machine.program.text(TextPlace::SmoothingOn).is_some();

@@ -40,6 +40,7 @@ pub use run::{BlockRunner, MOST_FAULTS, ProgramRun};
 
 use std::sync::Arc;
 
+use post_machine::face_mode::FaceMode;
 use post_machine::kinematics::Solver;
 use post_machine::tilted_plane::TiltedPlane;
 
@@ -89,6 +90,8 @@ pub struct MachineState {
     pub tcp: bool,
     /// The tilted plane in force.
     pub plane: Option<TiltedPlane>,
+    /// The polar interpolation in force: the tip goes straight, and the axes in polar coordinates.
+    pub face: Option<Arc<FaceMode>>,
     /// Name of the work offset in force: `G54`.
     pub work_offset: Option<String>,
     /// The spindle.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 use post_plugin::DialectSession as _;
-use post_posting::preview::wants_planes;
+use post_posting::preview;
 use post_posting::program::{DefaultSpindle, ReadingOptions};
 use post_posting::{MotionBlock, Observer, PostingRequest};
 
@@ -81,8 +81,8 @@ pub fn post(
         spindle: DefaultSpindle::Still,
         ..ReadingOptions::default()
     };
-    let ahead = match wants_planes(&machine, opened.dialect.capabilities()) {
-        true => match posting_pass::preview(input(of, token), &machine, reading.clone()) {
+    let ahead = match preview::is_wanted(&machine, opened.dialect.capabilities()) {
+        true => match posting_pass::first_pass(input(of, token), &machine, reading.clone()) {
             Ok(ahead) => Some(ahead),
             // The text lies in the memory: it fails where the work is given up.
             Err(_) => return None,

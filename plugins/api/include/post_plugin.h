@@ -413,6 +413,8 @@ typedef struct {
 /* Cycles do not wait at the bottom, or in a unit that is not known: a hole where the tool waits is made of
  * moves. */
 #define POST_WRITES_CYCLE_NO_DWELL 0x0000800000000000u
+/* WordLetter. */
+#define POST_WRITES_WORD_LETTER 0x0001000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -687,6 +689,14 @@ typedef struct {
 /* how many there are, and behind it as many: The feeds of all cuts, then the first axis word of all of them,
  * then the second, and so on. */
 #define POST_AT_CUTS_COLUMNS 2u
+/* A word of an axis means something else from here on, under WORD_LETTER: a coordinate of the control's own, in
+ * its polar interpolation, or the axis itself again. Which axis stands where is not known behind it. */
+#define POST_EVENT_WORD_LETTER 44u
+/* Which word of the setup, from 0. */
+#define POST_AT_WORD_LETTER_WORD 0u
+/* It is a coordinate, a length; else the axis itself. */
+#define POST_AT_WORD_LETTER_COORDINATE 1u
+/* texts[0], letter: The letter behind which it stands. */
 /* generated: end */
 
 /* Helpers. None of them reads past what an event or a setup says that it has. */

@@ -183,6 +183,8 @@ struct AxisState {
     modulo: Option<Box<Modulo>>,
     /// Text after the number.
     behind: &'static str,
+    /// The word is a coordinate for now, and stands as it is.
+    coordinate: bool,
     last: Modal<f64>,
 }
 
@@ -231,6 +233,7 @@ impl Axes {
             endless: word.rotary && !word.wrapped && word.travel.is_none(),
             modulo: None,
             behind: "",
+            coordinate: false,
             last: Modal::default(),
         });
         Axes { axes: axes.collect(), style, counts: Vec::new() }
@@ -315,6 +318,17 @@ impl Axes {
         }
     }
 
+    /// The word of this place stands behind `letter` from here on, as a `coordinate` or as the axis itself; no axis is known
+    /// to stand where it did.
+    pub fn rename(&mut self, place: usize, letter: &str, coordinate: bool) {
+        self.forget();
+        if let Some(axis) = self.axes.get_mut(place) {
+            letter.clone_into(&mut axis.name);
+            axis.front = Front::blank(letter);
+            axis.coordinate = coordinate;
+        }
+    }
+
     /// A move to `words` has something to write.
     pub fn moved(&self, words: &[f64]) -> bool {
         self.axes.iter().zip(words).any(|(axis, word)| !axis.last.is(*word))
@@ -369,7 +383,7 @@ impl AxisState {
             return;
         }
         let written = match self.front {
-            Some(front) if self.modulo.is_none() && self.behind.is_empty() => {
+            Some(front) if self.coordinate || self.modulo.is_none() && self.behind.is_empty() => {
                 style.look().append(&mut block.words, front, value, self.decimals)
             }
             _ => false,
@@ -382,7 +396,7 @@ impl AxisState {
     /// A word that says more than letter and number, or a number that is beyond the usual way.
     #[inline(never)]
     fn write_unusual(&mut self, block: &mut Block, value: f64, style: NumberStyle) {
-        match &mut self.modulo {
+        match self.modulo.as_mut().filter(|_| !self.coordinate) {
             None => block.number_behind(self.front, &self.name, value, self.decimals, style),
             Some(modulo) => {
                 let far = modulo.at.replace(value).map_or(0.0, |at| value - at);
@@ -395,7 +409,9 @@ impl AxisState {
                 block.number_behind(None, &modulo.ways[way], place, self.decimals, style);
             }
         }
-        block.words.push_str(self.behind);
+        if !self.coordinate {
+            block.words.push_str(self.behind);
+        }
     }
 }
 

@@ -145,6 +145,8 @@ capabilities! {
     46 CUTS;
     /// Cycles do not wait at the bottom, or in a unit that is not known: a hole where the tool waits is made of moves.
     47 CYCLE_NO_DWELL;
+    /// `WordLetter`.
+    48 WORD_LETTER;
 }
 
 impl Capabilities {
@@ -224,6 +226,7 @@ impl Event<'_> {
             Event::Probe { .. } => Capabilities::PROBE,
             Event::Instead { .. } => Capabilities::INSTEAD,
             Event::Cuts { .. } => Capabilities::CUTS,
+            Event::WordLetter { .. } => Capabilities::WORD_LETTER,
             _ => Capabilities::NONE,
         }
     }

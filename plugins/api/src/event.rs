@@ -487,6 +487,16 @@ events! { <'a>
         /// The feeds of all cuts, then the first axis word of all of them, then the second, and so on.
         columns: Columns<'a>,
     };
+    /// A word of an axis means something else from here on, under `WORD_LETTER`: a coordinate of the control's own, in its
+    /// polar interpolation, or the axis itself again. Which axis stands where is not known behind it.
+    44 WORD_LETTER "another letter of a word" WordLetter {
+        /// Which word of the setup, from 0.
+        word: u32,
+        /// It is a coordinate, a length; else the axis itself.
+        coordinate: bool,
+        /// The letter behind which it stands.
+        letter: &'a str,
+    };
     }
 }
 

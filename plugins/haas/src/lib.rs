@@ -85,6 +85,8 @@ const OWN: &[(&str, Meaning)] = &[
     ("G101", Meaning::Mirror),
     ("G100", Meaning::MirrorOff),
     ("G107", Meaning::CylinderTransformation),
+    ("G112", Meaning::FaceTransformation),
+    ("G113", Meaning::FaceTransformationOff),
     ("G12", Meaning::CycleOther),
     ("G13", Meaning::CycleOther),
     ("G150", Meaning::CycleOther),

@@ -95,7 +95,8 @@ impl Engine {
     /// What table and options give it words for.
     pub(crate) fn capabilities(&self) -> Capabilities {
         let table = self.table;
-        let mut writes = Capabilities::OPERATION | Capabilities::INSTEAD;
+        let mut writes =
+            Capabilities::OPERATION | Capabilities::INSTEAD | Capabilities::WORD_LETTER;
         if !table.codes.arc[0].is_empty() {
             writes |= Capabilities::ARC_XY
                 | Capabilities::ARC_ZX
@@ -346,6 +347,12 @@ impl Engine {
             Event::Cycle { .. } => self.begin_cycle(event)?,
             Event::CyclePoint { words, .. } => self.cycle_point(words, out)?,
             Event::CycleOff => self.end_cycle(out),
+            Event::WordLetter { word, coordinate, letter } => {
+                self.motion.settle(out);
+                self.motion.axes.rename(word as usize, letter, coordinate);
+                self.motion.moved_by_line();
+                self.motion.forget_feed();
+            }
             ref other => self.setting(other, out)?,
         }
         Ok(())

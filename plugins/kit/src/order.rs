@@ -48,6 +48,7 @@ pub const ORDER: &[(&str, &str)] = &[
     ("Probe", "at the part, not in a cycle"),
     ("Instead", "in front of the event that it stands for"),
     ("Cuts", "at the part, not in a cycle"),
+    ("WordLetter", "at the part, not in a cycle"),
 ];
 
 /// Follows a program, and says where it breaks the promised order.
@@ -114,6 +115,7 @@ impl EventOrder {
             | Event::Arc { .. }
             | Event::Spline { .. }
             | Event::Surface { .. }
+            | Event::WordLetter { .. }
             | Event::Probe { .. } => unless(!self.at_part, "before a first position"),
             Event::Park { .. }
             | Event::Turn { .. }

@@ -33,7 +33,7 @@ impl Control for Mazak {
         smoothing_anywhere: true,
         probe: "G31",
         subprogram: Subprogram::M98,
-        words: &[words::RETURNS, words::SUBPROGRAM_END, OWN],
+        words: &[words::RETURNS, words::POLAR, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };
 

@@ -10,6 +10,7 @@ use clap::Args;
 use post_machine::check::{Differing, compare};
 use post_machine::description::{Machine, Setting};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::face_mode::FaceMode;
 
 use post_cli::arguments::flag_values;
 use post_cli::arguments::flag_values::file;
@@ -155,12 +156,27 @@ fn alone(session: &Session, arguments: &CheckArguments, machine: &Machine) -> Re
         return Ok(());
     }
     print(session, &check_text::check(&check));
-    if !machine.heads.is_empty() {
-        let heads = machine.heads.iter().map(|head| head.name.as_str());
-        let heads: Vec<&str> = heads.collect();
+    if let Some(mode) = machine.in_face().and_then(|(_, face)| face.face.as_ref()) {
+        print(session, &polar(machine, mode));
+    }
+    let heads: Vec<&str> = machine.named_heads().map(|head| head.name.as_str()).collect();
+    if !heads.is_empty() {
         print(session, &format!("further heads, see --head: {}\n", heads.join(", ")));
     }
     Ok(())
+}
+
+/// What is written in polar interpolation of the control.
+fn polar(machine: &Machine, mode: &FaceMode) -> String {
+    let name = |joint: usize| machine.axes[joint].name.as_str();
+    let (across, turning) = (name(mode.across), name(mode.turning));
+    format!(
+        "polar            {} to {}: {across} and {} are coordinates on the face, {turning} at zero where it begins, no nearer to its line than {} mm\n",
+        mode.on.join(", "),
+        mode.off.join(", "),
+        mode.letter,
+        mode.pole
+    )
 }
 
 /// How far two machine files are apart.
@@ -203,11 +219,10 @@ fn machine(session: &Session, arguments: &CheckArguments) -> Result<Machine, Fai
 
 /// The machine with a head that the program can swap in.
 fn with_head(machine: Machine, name: &str) -> Result<Machine, Failure> {
-    let heads = &machine.heads;
-    if let Some(head) = heads.iter().find(|head| head.name == name) {
+    if let Some(head) = machine.named_heads().find(|head| head.name == name) {
         return Ok(head.machine.clone());
     }
-    let known: Vec<&str> = heads.iter().map(|head| head.name.as_str()).collect();
+    let known: Vec<&str> = machine.named_heads().map(|head| head.name.as_str()).collect();
     let help = match known.as_slice() {
         [] => "its file has no [head.NAME]".to_owned(),
         known => format!("its heads are {}", known.join(", ")),

@@ -117,6 +117,7 @@ impl PostArguments {
             || making.plan
             || self.looks_ahead(machine)
             || machine.wants_planes(true)
+            || machine.in_face().is_some()
             || self.outputs.0.verify
             || self.outputs.0.clearance
             || self.report.0.report.is_some()

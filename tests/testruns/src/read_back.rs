@@ -341,6 +341,46 @@ pub fn blocks(program: &str, names: &[&str], swap: &[String]) -> Vec<Block> {
     blocks
 }
 
+/// A program whose words between G12.1 and G13.1 are written as those of X and C themselves: X and `second` are right-angled
+/// there, and the words of X are `factor` radii in and out of it.
+pub fn unrolled(program: &str, second: &str, factor: f64) -> String {
+    let mut place: Option<[f64; 2]> = None;
+    let (mut x, mut turned) = (0.0, 0.0);
+    let number = |word: &str, name: &str| word.strip_prefix(name)?.parse::<f64>().ok();
+    let mut lines = Vec::new();
+    for line in program.lines() {
+        let mut left = Vec::new();
+        let mut told = false;
+        for word in line.split_whitespace() {
+            match (word, &mut place) {
+                ("G12.1", _) => (place, turned) = (Some([x / factor, 0.0]), 0.0),
+                ("G13.1", _) => place = None,
+                (word, Some(place)) if number(word, "X").is_some() => {
+                    place[0] = number(word, "X").unwrap() / factor;
+                    told = true;
+                }
+                (word, Some(place)) if number(word, second).is_some() => {
+                    place[1] = number(word, second).unwrap();
+                    told = true;
+                }
+                (word, _) => left.push(word.to_owned()),
+            }
+            if let (Some(value), None) = (number(word, "X"), place) {
+                x = value;
+            }
+        }
+        if let (Some([first, second]), true) = (place, told) {
+            let angle = libm::atan2(second, first);
+            let turn = std::f64::consts::TAU;
+            turned = angle + turn * libm::rint((turned - angle) / turn);
+            left.push(format!("X{:.9}", factor * libm::hypot(first, second)));
+            left.push(format!("C{:.9}", turned.to_degrees()));
+        }
+        lines.push(left.join(" "));
+    }
+    lines.join("\n")
+}
+
 /// A point of a CL file.
 #[derive(Clone, Debug)]
 pub struct Point {

@@ -156,6 +156,17 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         self.faults.push((motion.line, message, help));
     }
 
+    /// Between the words of polar interpolation the axes go in curves, which are not followed.
+    fn leave_face_out(&mut self, motion: &Motion) {
+        let message = "polar interpolation of the control: nothing is proven of the ways in it";
+        if self.faults.iter().all(|fault| fault.1 != message) {
+            let help = "prove the program that is posted without [mode.face]";
+            self.faults.push((motion.line, message.to_owned(), help));
+        }
+        self.proof.forget();
+        self.stock.iter_mut().for_each(CutStock::forget);
+    }
+
     fn motion(&mut self, motion: &Motion) {
         self.change_tool(motion);
         self.found.motions += 1;
@@ -163,6 +174,9 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             self.turns_part = true;
             let message = "the spindle turns the part: what is clamped is looked at as it stands, and nothing is proven of how it turns".to_owned();
             self.faults.push((motion.line, message, "programs that turn are looked at by eye; mill what turns with a machine file of its own"));
+        }
+        if motion.state.face.is_some() {
+            return self.leave_face_out(motion);
         }
         self.hold_lengths(motion);
         self.hold_beside(motion);

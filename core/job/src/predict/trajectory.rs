@@ -220,7 +220,7 @@ impl TaskReader<'_> {
     }
 }
 
-/// A head was swapped in: from here on the axes are others.
+/// A head was swapped in, or the control goes in polar coordinates: from here on the axes are others.
 fn head(done: &[BlockEffect], name: &str) -> Option<Diagnostic> {
     done.iter().find_map(|done| match done {
         BlockEffect::Event { line, event: ProgramEvent::Head(head) } => {
@@ -228,6 +228,12 @@ fn head(done: &[BlockEffect], name: &str) -> Option<Diagnostic> {
             let help = "predict the programs of its heads one by one (post --split tools)";
             let place = SourcePlace::new(name, *line, "", 0..0);
             Some(Diagnostic::error("head", message).help(help).at(Some(place)))
+        }
+        BlockEffect::Motion(motion) if motion.state.face.is_some() => {
+            let message = "polar interpolation of the control: how its axes go is not predicted";
+            let help = "predict the program that is posted without [mode.face]";
+            let place = SourcePlace::new(name, motion.line, "", 0..0);
+            Some(Diagnostic::error("mode", message).help(help).at(Some(place)))
         }
         _ => None,
     })

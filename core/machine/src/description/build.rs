@@ -97,6 +97,12 @@ fn with_heads(
         return read(table, sources, faults, evaluated);
     }
     let mut machine = read(table.clone(), sources, faults, evaluated)?;
+    if machine.in_face().is_some() {
+        let place = heads.into_iter().next().and_then(|head| head.place);
+        let message = "a machine with a mode of its control has no other heads".to_owned();
+        let finding = Diagnostic::error("machine-head", message).at(place);
+        return Err(vec![finding.help("a machine file for each head, or leave [mode] out")]);
+    }
     for head in heads {
         let mut layered = table.clone();
         overlay(layered.get_mut(), head.overrides);
@@ -384,6 +390,7 @@ impl Builder<'_> {
             profile: Profile::of(&file.profile),
             frame: Frame::default(),
             heads: Vec::new(),
+            face: None,
             unused_options,
             solids,
             fixtures,
@@ -397,6 +404,10 @@ impl Builder<'_> {
         if self.faults.is_empty() {
             self.check_chain(&machine, file.chain.span());
             self.check_errors(&machine, file.error.keys().next().map_or(0..0, Spanned::span));
+        }
+        if self.faults.is_empty() {
+            let mode = self.modes(&file.mode, &machine);
+            machine.heads.extend(mode);
         }
         Some(machine)
     }

@@ -11,6 +11,7 @@ use super::bounds::Bounds;
 use super::dependent::LimitFile;
 use super::errors::ErrorFile;
 use super::legs::LegFile;
+use super::mode::ModeFile;
 use super::motion::MotionFile;
 use super::plan::PlanFile;
 use super::profile::ProfileFile;
@@ -93,6 +94,8 @@ keys! {
         limit: Vec<Spanned<LimitFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
         /// Legs that drive the platform of a parallel machine, each `[[leg]]` one.
         leg: Vec<Spanned<LegFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
+        /// Coordinates of the control's own, in which whole operations are written.
+        mode: ModeFile,
         /// STL files of the machine's bodies, for pictures and for `post clearance`; mm, machine frame, every axis at zero. An axis letter
         /// is what that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is
         /// clamped with the part, `t` a holder or head besides. A path is that from this file; an empty one takes away

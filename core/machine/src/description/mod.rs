@@ -19,6 +19,7 @@ mod layers;
 mod legs;
 mod length;
 mod limits;
+mod mode;
 mod motion;
 mod numbers;
 mod options;
@@ -77,11 +78,15 @@ pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 use crate::along_word::AlongWord;
 use crate::dependent_limit::DependentLimit;
 use crate::diagnostic::{Diagnostic, SourcePlace};
+use crate::face_mode::FaceMode;
 use crate::kinematics::{
     AxisErrors, Chain, Freedom, Joint, Joints, Leg, MAX_AXES, NoClosedForm, Second, Solver,
 };
 use crate::servo::Servo;
 use crate::word_map::WordMap;
+
+/// Name of the head that a machine has in polar interpolation by the control: no CL file can say it.
+const FACE_MODE: &str = "mode face";
 
 /// The linear axes whose words can be those of a tip.
 pub(crate) const TIP_WORDS: [&str; 3] = ["X", "Y", "Z"];
@@ -162,8 +167,10 @@ pub struct Machine {
     pub clamps: bool,
     /// Some axis moves off the part alone.
     pub indexes: bool,
-    /// Heads that a word of the program (`HEAD/name`) swaps in.
+    /// Heads that a word of the program (`HEAD/name`) swaps in, and the machine in a mode of its control.
     pub heads: Vec<Head>,
+    /// The control interpolates in polar coordinates, and the axes are those of the face; none on the machine itself.
+    pub face: Option<FaceMode>,
     /// Options for plugins that it does not use.
     pub unused_options: Vec<UnusedOptions>,
     /// Shapes of its bodies, for pictures and for what hits what.
@@ -596,6 +603,26 @@ impl Machine {
     /// The head that `HEAD/name` swaps in.
     pub fn head(&self, name: &str) -> Option<&Head> {
         self.heads.iter().find(|head| head.name == name)
+    }
+
+    /// The machine with the head of that name, or in the mode of that name; with an empty name, by which a mode ends, the
+    /// machine itself.
+    pub fn changed_to(&self, name: &str) -> Option<&Machine> {
+        match name.is_empty() && self.in_face().is_some() {
+            true => Some(self),
+            false => self.head(name).map(|head| &head.machine),
+        }
+    }
+
+    /// Name of the head, and the machine, while its control interpolates in polar coordinates; none where it does not.
+    pub fn in_face(&self) -> Option<(&str, &Machine)> {
+        let face = self.heads.iter().find(|head| head.machine.face.is_some())?;
+        Some((&face.name, &face.machine))
+    }
+
+    /// Heads that the CL file can name.
+    pub fn named_heads(&self) -> impl Iterator<Item = &Head> {
+        self.heads.iter().filter(|head| head.machine.face.is_none())
     }
 
     /// The axis of that name, and the machine that has it: this one, or with one of its heads.

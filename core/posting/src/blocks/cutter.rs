@@ -1,12 +1,17 @@
 //! Cutter radius compensation: the control's, refused where it would offset in the wrong plane.
 
-use post_machine::description::Tcp;
+use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::orientation::angle;
 use post_plugin::Compensation;
 
 use super::BlockStage;
 use crate::accuracy::{PathNode, Placer};
+
+/// The machine has a linear axis of this name.
+fn slides(machine: &Machine, name: &str) -> bool {
+    machine.axes.iter().any(|axis| !axis.joint.rotary && axis.name == name)
+}
 
 impl BlockStage<'_> {
     /// Compensation is switched on or off.
@@ -39,6 +44,10 @@ impl BlockStage<'_> {
             format!("the tool tilted by {:.3}°", tilt.to_degrees())
         } else if turned {
             "rotary axes turning".to_owned()
+        } else if machine.face.is_some() {
+            "the control interpolating in polar coordinates ([mode.face])".to_owned()
+        } else if !["X", "Y"].into_iter().all(|name| slides(machine, name)) {
+            "a machine that has not both X and Y".to_owned()
         } else {
             return;
         };

@@ -377,8 +377,8 @@ impl<'a> BlockStage<'a> {
             }
             Command::Head(name) => {
                 self.depart(line, out);
-                if let Some(head) = self.base.head(name) {
-                    self.machine = &head.machine;
+                if let Some(machine) = self.base.changed_to(name) {
+                    self.machine = machine;
                     self.driven = driven(self.machine);
                     self.kinds = AxisKinds::new(self.machine);
                     self.between.set(self.machine);

@@ -404,13 +404,18 @@ impl<'a> ConfigurationStage<'a> {
             }
             Command::Index { axis, angle } => self.index(line, *axis, *angle),
             Command::Head(name) => {
-                let Some(head) = self.base.head(name) else {
+                let Some(machine) = self.base.changed_to(name) else {
                     self.findings.at(line, no_head(self.base, name));
                     return;
                 };
-                self.lengths.swap_head(name);
                 self.route.leave();
-                self.machine = &head.machine;
+                self.machine = machine;
+                if self.base.in_face().is_some() {
+                    self.change_mode(line);
+                    self.put(StreamItem::Command { line, command }, out);
+                    return;
+                }
+                self.lengths.swap_head(name);
                 // Its bodies are not known.
                 self.route.judge.bodies = None;
                 // A head may have lengths of its own, and a spindle of its own.
@@ -451,6 +456,20 @@ impl<'a> ConfigurationStage<'a> {
             _ => {}
         }
         self.put(StreamItem::Command { line, command }, out);
+    }
+
+    /// The axes are those of a mode of the control from here on, or those of the machine again: it begins and ends with
+    /// the turning axis next to zero.
+    fn change_mode(&mut self, line: u64) {
+        let mut stands = *self.route.stands_at();
+        for (value, axis) in stands.iter_mut().zip(&self.base.axes) {
+            if axis.joint.rotary {
+                *value = 0.0;
+            }
+        }
+        self.route.judge.bodies = None;
+        self.equip(line);
+        self.route.begin_at(stands);
     }
 
     /// Where a further file has the rotary axes as it begins: as a file of its own, at the full turn next to where they
@@ -561,7 +580,7 @@ impl<'a> ConfigurationStage<'a> {
 
 /// `HEAD` names a head that the machine does not have.
 fn no_head(machine: &Machine, name: &str) -> Diagnostic {
-    let heads = machine.heads.iter();
+    let heads = machine.named_heads();
     let known: Vec<&str> = heads.map(|head| head.name.as_str()).collect();
     Diagnostic::error("head", format!("{} has no head {name}", machine.name)).help(
         if known.is_empty() {

@@ -22,6 +22,7 @@ impl EmitStage<'_> {
             && self.spindle.waits.is_none()
             && self.compensation.waits.is_none()
             && self.machine.limits.is_empty()
+            && self.machine.face.is_none()
             && !self.words.is_coupled()
             && !self.clamps()
             && !self.writer.notes_places()

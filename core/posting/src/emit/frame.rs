@@ -54,6 +54,7 @@ impl EmitStage<'_> {
             self.compensation.left.get_or_insert(line);
         }
         self.keep_tip(line, false);
+        self.end_face(line);
         self.instead(line, TextPlace::Retract);
         let machine = self.machine;
         let low = self.across.as_ref().map(|way| [way.retract]);
@@ -279,6 +280,12 @@ impl EmitStage<'_> {
 
     /// Another head: the machine is that of the head from here on.
     pub(super) fn swap_head(&mut self, line: u64, name: &str) {
+        if self.base.in_face().is_some() {
+            if let Some(machine) = self.base.changed_to(name) {
+                self.change_mode(line, machine);
+            }
+            return;
+        }
         let Some(place) = self.base.heads.iter().position(|head| head.name == name) else {
             return;
         };
@@ -349,7 +356,10 @@ impl EmitStage<'_> {
         self.worked = true;
         match block.reason {
             BlockReason::Above => self.extremes.reach_above(),
-            _ => self.extremes.reach(&block.joints),
+            _ => {
+                let [_, to] = self.real_ends(block);
+                self.extremes.reach(&to);
+            }
         }
         let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
@@ -362,6 +372,9 @@ impl EmitStage<'_> {
             self.spindle.waits = Some(FirstPosition::of(block));
         } else {
             self.wake(line);
+        }
+        if let Some(mode) = &self.machine.face {
+            return self.position_on_face(block, mode);
         }
         let words = &block.words[..self.writer.words()];
         // Whether they are clamped is not known.

@@ -4,6 +4,7 @@ mod columns;
 mod control;
 mod cycles;
 mod extremes;
+mod face;
 mod frame;
 mod limits;
 mod state;
@@ -29,6 +30,7 @@ use crate::program::Command;
 use crate::stream::StreamItem;
 use cycles::{CommandedCycle, CycleWordPlaces};
 pub(crate) use extremes::Extremes;
+use face::FaceState;
 use limits::LimitWatch;
 use state::{
     ClampState, CompensationState, CoolantState, PlaneState, ProgramSpindle, SmoothingState,
@@ -57,6 +59,7 @@ pub(crate) struct EmitStage<'a> {
     plane: PlaneState,
     /// The way across behind the next retract; none: as the machine file has it.
     across: Option<Box<WayAcross>>,
+    face: FaceState,
     /// The cycle in force.
     cycle: Option<CommandedCycle>,
     cycle_words: CycleWordPlaces,
@@ -110,6 +113,7 @@ impl<'a> EmitStage<'a> {
             coolant: CoolantState::default(),
             plane: PlaneState::default(),
             across: None,
+            face: FaceState::default(),
             cycle: None,
             cycle_words: CycleWordPlaces::new(machine),
             tool: None,
@@ -250,7 +254,8 @@ impl<'a> EmitStage<'a> {
             BlockKind::Position => self.position(block),
             BlockKind::Reference => {
                 self.retract(line);
-                self.extremes.go(&self.last, &block.joints);
+                let [from, to] = self.real_ends(block);
+                self.extremes.go(&from, &to);
                 self.position(block);
             }
             BlockKind::Arc | BlockKind::Spline => self.curve(block, printed),
@@ -260,11 +265,12 @@ impl<'a> EmitStage<'a> {
                     self.extremes.mark(block, self.writer.next());
                     return;
                 }
+                let [from, to] = self.real_ends(block);
                 match block.reason {
                     BlockReason::Above => self.extremes.reach_above(),
-                    _ => self.extremes.reach(&block.joints),
+                    _ => self.extremes.reach(&to),
                 }
-                self.extremes.go(&self.last, &block.joints);
+                self.extremes.go(&from, &to);
                 if self.clamps() {
                     self.clamp(block);
                 }

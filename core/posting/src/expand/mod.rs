@@ -16,8 +16,9 @@ use post_machine::diagnostic::{Diagnostic, Short, SourceFiles};
 use post_plugin::{Capabilities, Cycle};
 
 use crate::curve::{CurveMove, CurveMoves, CurvePolicy, CurveShape};
+use crate::faces::{FaceChange, FaceTracker};
 use crate::findings::Findings;
-use crate::preview::FilePreview;
+use crate::preview::{FilePreview, wants_planes};
 use crate::program::limits::MOST_CHORDS;
 use crate::program::spline::{chords, flatten};
 use crate::program::{
@@ -74,6 +75,8 @@ pub(crate) struct ExpandStage {
     only_moves: bool,
     /// Where the tool axis stays, if the control is to get planes.
     planes: Option<PlaneTracker>,
+    /// What is written in polar interpolation of the control, if it has that.
+    faces: Option<FaceTracker>,
     findings: Findings,
 }
 
@@ -93,6 +96,7 @@ pub fn expanded(
         cycles: Capabilities::NONE,
         only_moves: false,
         planes: None,
+        faces: None,
         findings: findings.clone(),
     };
     let all = gathered(|out| stage.take(steps, out));
@@ -118,7 +122,8 @@ impl ExpandStage {
         let tangential = Tangential::new(machine, findings);
         let keeps = CurvePolicy::new(machine, writes);
         Self {
-            planes: ahead.map(PlaneTracker::new),
+            faces: ahead.as_ref().and_then(|ahead| FaceTracker::new(machine, Arc::clone(ahead))),
+            planes: ahead.filter(|_| wants_planes(machine, writes)).map(PlaneTracker::new),
             cycles: match machine.control.cycles {
                 Cycles::Native => writes,
                 Cycles::Moves => Capabilities::NONE,
@@ -155,6 +160,7 @@ impl ExpandStage {
     pub(crate) fn passes_moves(&self, line: u64) -> bool {
         self.tangential.is_none()
             && self.planes.as_ref().is_none_or(|planes| planes.stays_until(line))
+            && self.faces.as_ref().is_none_or(|faces| faces.stays_until(line))
     }
 
     /// Straight moves have left the stage by another way, the last to `tip`.
@@ -190,6 +196,8 @@ impl ExpandStage {
                 self.only_said = true;
                 out.note(line, FixedAxis(origin));
             }
+            let change = self.faces.as_mut().and_then(|faces| faces.change(line, step));
+            self.face_changes(line, change, out);
             match step {
                 ProgramStep::Move(motion) => self.go(line, *motion, out),
                 ProgramStep::Arc(arc) => self.arc(line, arc, out),
@@ -202,8 +210,24 @@ impl ExpandStage {
         }
     }
 
-    /// The file ends: what was kept back is handed on.
-    pub(crate) fn finish(&mut self, out: &mut ExpandedSink<'_>) {
+    /// The mode of the control begins or ends.
+    fn face_changes(&mut self, line: u64, change: Option<FaceChange>, out: &mut ExpandedSink<'_>) {
+        match change {
+            None => {}
+            Some(FaceChange::Without(finding)) => self.findings.at(line, finding),
+            Some(FaceChange::Machine(name)) => {
+                self.left();
+                // A curve begins where the tool stood before it left.
+                self.only_said = true;
+                out.command(line, Command::Head(name));
+            }
+        }
+    }
+
+    /// The file ends: what was kept back is handed on; `line` is the last of it.
+    pub(crate) fn finish(&mut self, line: u64, out: &mut ExpandedSink<'_>) {
+        let change = self.faces.as_mut().and_then(FaceTracker::end);
+        self.face_changes(line, change, out);
         if let Some(tangential) = &mut self.tangential {
             tangential.finish(out);
         }
@@ -249,6 +273,7 @@ impl ExpandStage {
         let keeps = |keeps: &CurvePolicy| keeps.arc(arc, end, count, planes);
         if step.start_axis != end.axis
             || count.saturating_mul(turns as u64) > MOST_CHORDS
+            || self.faces.as_ref().is_some_and(FaceTracker::is_on)
             || !self.keeps.as_ref().is_some_and(keeps)
         {
             return self.chords(line, step, out);
@@ -318,7 +343,9 @@ impl ExpandStage {
             let to_start = StraightMove { tip, chord: 0.0, ..*end };
             self.go(line, to_start, out);
         }
-        let keeps = |count| self.keeps.as_ref().is_some_and(|keeps| keeps.spline(end, count));
+        let face = self.faces.as_ref().is_some_and(FaceTracker::is_on);
+        let keeps =
+            |count| !face && self.keeps.as_ref().is_some_and(|keeps| keeps.spline(end, count));
         let along = match chords(spline, self.chord_tolerance) {
             Some(count) if count <= MOST_CHORDS => keeps(count),
             count => {

@@ -216,8 +216,8 @@ impl<'a> PlanStage<'a> {
         match command {
             Command::Head(name) => {
                 self.stop(out);
-                if let Some(head) = self.base.head(name) {
-                    self.machine = &head.machine;
+                if let Some(machine) = self.base.changed_to(name) {
+                    self.machine = machine;
                     self.run = None;
                 }
             }

@@ -164,15 +164,15 @@ impl<'a> TimingStage<'a> {
         match command {
             Command::Dwell(seconds) => self.statistics.other += seconds / 60.0,
             Command::Head(name) => {
-                let Some(head) = self.base.head(name) else {
+                let Some(machine) = self.base.changed_to(name) else {
                     return;
                 };
-                if let Some(feeds) = FeedWriter::new(&head.machine, &self.format, self.writes) {
+                if let Some(feeds) = FeedWriter::new(machine, &self.format, self.writes) {
                     self.feeds = feeds;
                 }
-                self.limits = limits::of(&head.machine);
-                self.slowness = head.machine.slowness();
-                self.rapids.set(&head.machine);
+                self.limits = limits::of(machine);
+                self.slowness = machine.slowness();
+                self.rapids.set(machine);
             }
             _ => {}
         }

@@ -23,6 +23,8 @@ const SAME: f64 = 1e-9;
 pub(crate) struct Rapids {
     tcp: Tcp,
     mode: Rapid,
+    /// The control has no rapids in the mode that it is in: each is a feed move.
+    none: bool,
     /// Minutes that each axis needs for one mm or radian at its largest feed.
     slowness: Joints,
     /// Minutes for the axes called X, Y and Z.
@@ -42,6 +44,7 @@ impl Rapids {
     pub(super) fn new(machine: &Machine, writes: Capabilities) -> Self {
         let mut rapids = Self {
             tcp: machine.control.tcp,
+            none: false,
             mode: machine.rapid(writes.has(Capabilities::TCP_RAPIDS_PASS)),
             slowness: Joints::default(),
             coordinates: [0.0; 3],
@@ -59,6 +62,7 @@ impl Rapids {
     /// Another head is in.
     pub(super) fn set(&mut self, machine: &Machine) {
         self.slowness = machine.slowness();
+        self.none = machine.face.is_some();
         self.down = machine
             .solver(0.0)
             .ok()
@@ -96,6 +100,9 @@ impl Rapids {
         // Without a largest feed there is none to write.
         if least <= 0.0 {
             return false;
+        }
+        if self.none {
+            return true;
         }
         let full_speed = self.full_speed(last, block, least);
         let fast = least > full_speed * OVER;

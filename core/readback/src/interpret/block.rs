@@ -350,6 +350,7 @@ impl ControlState {
             (self.state.compensation != 0, "radius compensation"),
             (self.cycles.in_force(), "a cycle"),
             (self.frames.plane.is_some(), "a tilted plane"),
+            (self.face.is_some(), "polar interpolation"),
             (self.state.tcp, "tool centre point control"),
         ];
         let in_force = holds.iter().filter(|(holds, _)| *holds).map(|(_, name)| *name).collect();
@@ -368,6 +369,7 @@ impl ControlState {
             self.relies_on(ModalGroup::Units);
             self.relies_on(ModalGroup::Distance);
         }
+        self.alone_on_face(asked)?;
         if let Some((code, meaning)) = asked.frame {
             return frames::code(self, code, meaning, words);
         }

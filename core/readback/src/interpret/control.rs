@@ -13,6 +13,7 @@ use post_plugin::Language;
 
 use super::ReadReport;
 use super::block_words::bit;
+use super::face::FaceWords;
 use super::frame::{CoordinateFrame, FrameStack};
 use super::state::{
     ArcPlane, AxisLetters, ControlState, FeedMeaning, ModalState, MotionMode, MountedHead,
@@ -99,7 +100,7 @@ impl ControlState {
     ) -> Result<Self, Box<Diagnostic>> {
         let solver = machine.solver(0.0).map_err(|lack| machine.unsolvable(&lack).boxed())?;
         let solver = Arc::new(solver);
-        let heads = machine.heads.iter();
+        let heads = machine.named_heads();
         let heads = heads
             .map(|head| MountedHead {
                 name: head.name.clone(),
@@ -107,6 +108,7 @@ impl ControlState {
                 machine: Arc::new(head.machine.clone()),
             })
             .collect();
+        let axes = AxisLetters::new(machine);
         let mut control = Self {
             file: file.to_owned(),
             lexicon: lexicon.clone(),
@@ -115,7 +117,9 @@ impl ControlState {
             machine: Arc::new(machine.clone()),
             heads,
             head_by_hand: None,
-            axes: AxisLetters::new(machine),
+            face_words: FaceWords::of(machine, &axes),
+            face: None,
+            axes,
             modal: ModalState::new(lexicon, machine.control.units),
             frames: FrameStack::default(),
             work: None,
@@ -134,6 +138,7 @@ impl ControlState {
                 compensation: 0,
                 tcp: false,
                 plane: None,
+                face: None,
                 work_offset: None,
                 spindle: SpindleState::Off,
                 coolants: Coolants::default(),

@@ -49,7 +49,7 @@ impl ControlState {
     #[inline]
     fn feed_length(&self, way: &Interpolation, tip: f64, from: &Stance, to: &Stance) -> f64 {
         let counted = self.machine.control.tcp_feed_length;
-        if self.state.tcp && tip > STANDS && counted == TcpFeedLength::Tip {
+        if self.face.is_some() || self.state.tcp && tip > STANDS && counted == TcpFeedLength::Tip {
             return tip;
         }
         let mut squares = 0.0;

@@ -91,6 +91,9 @@ impl ControlState {
         path: &Curve,
         target: &MotionTarget,
     ) -> Result<(), Box<Diagnostic>> {
+        if self.face.is_some() {
+            return self.lead_on_face(kind, path, target);
+        }
         let from = self.at;
         let tips = self.tip_words();
         if let Some(vector) = target.vector {

@@ -18,6 +18,13 @@ impl ControlState {
         words: &mut BlockWords,
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
+        match meaning {
+            Meaning::FaceTransformation => return self.begin_face(),
+            Meaning::FaceTransformationOff => return self.end_face(),
+            // One word ends all transformations of some controls.
+            Meaning::TcpOff => self.end_face()?,
+            _ => {}
+        }
         if self.sets_mode(meaning) || asked.takes(code, meaning) {
             return Ok(());
         }
@@ -159,7 +166,6 @@ fn is_not_followed(meaning: Meaning) -> bool {
             | Meaning::Scale
             | Meaning::Mirror
             | Meaning::Polar
-            | Meaning::FaceTransformation
             | Meaning::CylinderTransformation
             | Meaning::Diameter
             | Meaning::LengthNegative

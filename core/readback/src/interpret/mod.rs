@@ -11,6 +11,7 @@
 //! | `names` | names, calls and texts among the words |
 //! | `run` | plain blocks that are run together |
 //! | `go`, `arcs`, `splines`, `machine_moves` | from words to axis values, tip and tool axis |
+//! | `face` | polar interpolation by the control |
 //! | `feed`, `tools` | time, tool lengths |
 //! | `relied` | what the program relies on and does not say |
 //! | `frame` | frames within one another |
@@ -30,6 +31,7 @@ mod conversational;
 mod corners;
 mod cycles;
 mod expression;
+mod face;
 mod feed;
 mod flow;
 mod frame;

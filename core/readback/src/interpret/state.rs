@@ -54,6 +54,10 @@ pub(super) struct ControlState {
     pub variables: Variables,
     /// The cycle that is in force, if there is one.
     pub cycles: CycleState,
+    /// What its words are in polar interpolation of the control; none where the machine has none.
+    pub face_words: Option<super::face::FaceWords>,
+    /// The polar interpolation in force.
+    pub face: Option<Box<super::face::FaceReading>>,
     /// The spline whose control points are told, if one is.
     pub spline: Option<Box<OpenSpline>>,
     /// What conversational path functions remember.

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use post_machine::description::{Axis, Machine};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::face_mode::FaceMode;
 use post_machine::kinematics::MAX_AXES;
 use post_machine::kinematics::travel::passed;
 use post_machine::kinematics::{
@@ -99,6 +100,12 @@ impl AxisLimitCheck {
         motion: &Motion,
         bend: Option<f64>,
     ) -> Option<AxisFault> {
+        if let Some(mode) = &motion.state.face {
+            let mut close = motion.to.joints;
+            let [from, to] = [&motion.from, &motion.to].map(|end| mode.real_place(&end.joints));
+            close[mode.across] = mode.centre + FaceMode::nearest(from, to);
+            return self.beyond(machine, motion, [&close, &motion.to.joints]);
+        }
         if motion.way == Interpolation::Axes {
             return self.beyond(machine, motion, [&motion.to.joints; 2]);
         }
@@ -215,7 +222,7 @@ impl AxisLimitCheck {
     /// No axis passes its largest feed: where all go linearly as their ways tell; where the control keeps the tip as arms
     /// alone do, the speed of an axis differing from that of the whole way by half of its second derivative at most.
     fn is_slow(&self, motion: &Motion, bend: Option<f64>) -> bool {
-        if self.driven {
+        if self.driven || motion.state.face.is_some() {
             return false;
         }
         let (from, to) = (&motion.from.joints, &motion.to.joints);
@@ -239,6 +246,9 @@ impl AxisLimitCheck {
         motion: &Motion,
         enough: f64,
     ) -> Option<(f64, usize)> {
+        if let Some(mode) = &motion.state.face {
+            return self.least_on_face(mode, motion);
+        }
         let curved = motion.way.is_curved();
         let follows = motion.way != Interpolation::Axes && !curved;
         let (mut most, mut at) = (0.0, None);
@@ -305,6 +315,26 @@ fn drive_minutes(machine: &Machine, motion: &Motion, enough: f64) -> Option<(f64
         .filter(|(minutes, _)| minutes.is_finite())
 }
 
+impl AxisLimitCheck {
+    /// [`AxisLimitCheck::least_minutes`] in polar interpolation.
+    fn least_on_face(&self, mode: &FaceMode, motion: &Motion) -> Option<(f64, usize)> {
+        let joints = [&motion.from, &motion.to].map(|end| &end.joints);
+        let [from, to] = joints.map(|joints| mode.real_place(joints));
+        let turning = FaceMode::most_turn(from, to) * self.slowness[mode.turning];
+        let across = libm::hypot(to[0] - from[0], to[1] - from[1]) * self.slowness[mode.across];
+        let others = (0..MAX_AXES).filter(|place| ![mode.turning, mode.across].contains(place));
+        let others = others.map(|place| {
+            ((joints[1][place] - joints[0][place]).abs() * self.slowness[place], place)
+        });
+        let polar = [(turning, mode.turning), (across, mode.across)];
+        polar
+            .into_iter()
+            .chain(others)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|most| most.0 > 0.0)
+    }
+}
+
 /// Number of places at which a curve is looked at.
 fn looks(motion: &Motion) -> u32 {
     let turns = match motion.way.curve() {
@@ -366,6 +396,9 @@ pub(super) fn bend_between_words(motion: &Motion) -> Option<f64> {
     let (Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis) = motion.way else {
         return None;
     };
+    if motion.state.face.is_some() {
+        return None;
+    }
     let ends = [&motion.from.joints, &motion.to.joints];
     let bend = TcpBlock::bend_by_arms(&motion.state.solver, ends, motion.to.pose.tip);
     bend.is_finite().then_some(bend + ROUNDED)

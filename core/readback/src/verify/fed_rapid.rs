@@ -69,17 +69,22 @@ impl<C: Course> Verifier<'_, C> {
     /// A motion at feed that the machine file lets a rapid be: as fast as its axes go.
     pub(super) fn is_as_fast_as_rapids(&self, motion: &Motion) -> bool {
         let from_anywhere = || self.apart && fed_rapids::comes_from_anywhere(self.machine, motion);
-        self.rules.linear_rapids
+        self.has_linear_rapids(motion)
             && motion.kind == MotionKind::Feed
             && (fed_rapids::is_as_fast_as_rapids(&self.axes, self.machine, motion)
                 || from_anywhere())
+    }
+
+    /// The machine file has rapids as feed moves, or there are none in the mode that the control is in.
+    fn has_linear_rapids(&self, motion: &Motion) -> bool {
+        self.rules.linear_rapids || motion.state.face.is_some()
     }
 
     /// A rapid of the course is made at feed: where the machine file has it so, as fast as the axes hold.
     fn rapid_at_feed(&mut self, motion: &Motion, cl_line: u64) {
         self.found.rapids_at_feed += 1;
         let feed = motion.feed;
-        if !self.rules.linear_rapids {
+        if !self.has_linear_rapids(motion) {
             let message = "a rapid of the CL file is made at feed".to_owned();
             let told = format!("{message}: {feed:.1} mm/min");
             self.limit_fault("rapid", message, told, motion, cl_line, feed);

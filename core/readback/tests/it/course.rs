@@ -35,6 +35,7 @@ fn state(solver: &Arc<Solver>) -> Arc<MachineState> {
         compensation: 0,
         tcp: false,
         plane: None,
+        face: None,
         work_offset: None,
         spindle: SpindleState::Off,
         coolants: Coolants::default(),

@@ -140,6 +140,7 @@ fn what_is_found_does_not_hang_on_whether_each_line_is_told() {
         compensation: 0,
         tcp: true,
         plane: None,
+        face: None,
         work_offset: None,
         spindle: SpindleState::Off,
         coolants: Coolants::default(),

@@ -136,6 +136,7 @@ impl Does {
             compensation: 0,
             tcp: false,
             plane: None,
+            face: None,
             work_offset: None,
             spindle: SpindleState::Off,
             coolants: Coolants::default(),

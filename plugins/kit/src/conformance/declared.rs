@@ -76,6 +76,14 @@ pub(super) fn declared(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
     trials.extend(settings());
     trials.extend(cycles(declares));
     trials.push(plane(angles));
+    let letter = |letter| {
+        let named = Event::WordLetter { word: 0, coordinate: true, letter };
+        [named, Event::linear(XY, SLOW)]
+    };
+    trials.push(
+        CapabilityTrial::new(Capabilities::WORD_LETTER, "another letter of a word", letter("Q"))
+            .but("yet another letter", letter("E")),
+    );
     if pen.setup.tcp {
         trials.push(vector());
         let switch = [Event::Tcp { on: false }, Event::Tcp { on: true }];

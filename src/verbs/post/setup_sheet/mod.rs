@@ -128,7 +128,7 @@ fn the_machine(job: &SheetJob<'_>, programs: &[(&PathArg, &PostingReport)]) -> S
     if machine.length_axis == LengthAxis::None {
         row("Length registers", NO_LENGTH.to_owned());
     }
-    for head in &machine.heads {
+    for head in machine.named_heads() {
         if head.machine.length_axis == LengthAxis::None && machine.length_axis != LengthAxis::None {
             row(&format!("Length registers with head {}", head.name), NO_LENGTH.to_owned());
         }

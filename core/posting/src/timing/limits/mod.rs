@@ -1,5 +1,6 @@
 //! What keeps a block from being faster: each limit a file of its own, and a line in [`of`].
 
+mod face;
 pub(super) mod max_feed;
 mod planned;
 
@@ -24,5 +25,10 @@ pub trait BlockTimeLimit: std::fmt::Debug {
 
 /// The limits that hold on a machine.
 pub fn of(machine: &Machine) -> Vec<Box<dyn BlockTimeLimit>> {
-    vec![Box::new(max_feed::MaxFeed::new(machine)), Box::new(planned::PlannedFeed)]
+    let mut limits: Vec<Box<dyn BlockTimeLimit>> =
+        vec![Box::new(max_feed::MaxFeed::new(machine)), Box::new(planned::PlannedFeed)];
+    if let Some(mode) = &machine.face {
+        limits.push(Box::new(face::TurningFeed::new(mode)));
+    }
+    limits
 }

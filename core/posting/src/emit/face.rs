@@ -1,0 +1,205 @@
+//! Polar interpolation of the control around the moves of an operation: how the tool comes to it, and what the real axes do.
+
+use post_machine::axis_words::{self, AxisWords, WordValues};
+use post_machine::description::Machine;
+use post_machine::face_mode::FaceMode;
+use post_machine::kinematics::Joints;
+use post_machine::kinematics::travel::{AT_END, OverTravel, passed};
+use post_plugin::{Event, Feed};
+
+use super::EmitStage;
+use super::cycles::CycleWordPlaces;
+use crate::accuracy::PlacementError;
+use crate::blocks::{BlockReason, MotionBlock};
+use crate::refusal;
+
+/// The tool goes round to its first place so far below the retract, mm.
+const BELOW: f64 = 1.0;
+
+/// Words of a block by what they mean on the face: places among them.
+struct FaceWords {
+    turning: usize,
+    across: usize,
+    along: usize,
+    /// Units of the word of the axis across in a mm, in the mode and outside.
+    scales: [f64; 2],
+    /// Largest feed along the tool, mm/min.
+    down: f64,
+}
+
+/// What the mode is told by.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FaceState {
+    /// It is in force.
+    on: bool,
+    /// Where the real axes stand: mm and radians.
+    stands: Joints,
+}
+
+impl<'a> EmitStage<'a> {
+    /// The machine works on as another one of its modes; the tool is away from the part then.
+    pub(super) fn change_mode(&mut self, line: u64, machine: &'a Machine) {
+        self.leave(line);
+        self.machine = machine;
+        self.words = AxisWords::new(machine, self.writer.format());
+        self.cycle_words = CycleWordPlaces::new(machine);
+    }
+
+    /// The mode ends, ahead of a retract, if it is in force: the axes are themselves again.
+    pub(super) fn end_face(&mut self, line: u64) {
+        let Some(mode) = self.machine.face.as_ref().filter(|_| self.face.on) else {
+            return;
+        };
+        self.face.on = false;
+        self.last = self.face.stands;
+        for text in &mode.off {
+            self.writer.push(line, Event::Word { text });
+        }
+        let Some(words) = self.face_words(mode) else {
+            return;
+        };
+        let letter = &self.base.axes[mode.turning].name;
+        let word = words.turning as u32;
+        self.writer.push(line, Event::WordLetter { word, coordinate: false, letter });
+    }
+
+    /// The first position of an operation in the mode: the part is turned to zero, the tool comes to the radius of the place
+    /// far from it, the mode begins, and the part turns with the tool over the place before it goes down.
+    pub(super) fn position_on_face(&mut self, block: &MotionBlock, mode: &'a FaceMode) {
+        let line = block.line;
+        let Some(places) = self.face_words(mode) else {
+            return;
+        };
+        // It is the machine itself that comes there.
+        for joint in 0..self.base.axes.len() {
+            let clamp = self.base.axes[joint].clamp.as_ref();
+            if let Some(clamp) = clamp {
+                self.writer.push(line, Event::Word { text: &clamp.off });
+                self.clamps.on &= !(1 << joint);
+            }
+        }
+        let place = mode.place(&block.joints);
+        let radius = libm::hypot(place[0], place[1]);
+        let count = self.writer.words();
+        let high = self.height(block, places.along);
+        let mut words: WordValues = block.words;
+        words[places.turning] = 0.0;
+        words[places.along] = high;
+        words[places.across] = self.rounded(places.across, radius * places.scales[1]);
+        self.writer.push(line, Event::Turn { words: &words[..count] });
+        self.smooth(line);
+        self.keep_tip(line, false);
+        let tool = None;
+        let position =
+            Event::Position { tool, feed: None, plane_first: true, words: &words[..count] };
+        self.writer.push(line, position);
+        self.clear = false;
+        for text in &mode.on {
+            self.writer.push(line, Event::Word { text });
+        }
+        let letter = &mode.letter;
+        let word = places.turning as u32;
+        self.writer.push(line, Event::WordLetter { word, coordinate: true, letter });
+        self.face.on = true;
+        let mut from = [radius, 0.0];
+        for to in FaceMode::round_to(place) {
+            words[places.across] = self.rounded(places.across, to[0] * places.scales[0]);
+            words[places.turning] = self.rounded(places.turning, to[1] * self.length_unit());
+            let minutes = mode.least_minutes(from, to);
+            let way = libm::hypot(to[0] - from[0], to[1] - from[1]);
+            self.go_at(line, way / minutes, &words[..count]);
+            from = to;
+        }
+        match block.time.feed {
+            Some(feed) => self.linear(line, feed, &block.words[..count]),
+            None => self.go_at(line, places.down, &block.words[..count]),
+        }
+        if block.reason != BlockReason::Above {
+            self.begin_compensation(line);
+        }
+    }
+
+    /// The block in real axis values: where it begins and where it ends, which is checked and noted.
+    pub(super) fn real_ends(&mut self, block: &MotionBlock) -> [Joints; 2] {
+        let Some(mode) = &self.machine.face else {
+            return [self.last, block.joints];
+        };
+        let to = mode.place(&block.joints);
+        let (from, stands) = match self.face.on {
+            true => (mode.place(&self.last), self.face.stands),
+            false => (to, mode.real(to, &block.joints, 0.0)),
+        };
+        let real = mode.real(to, &block.joints, stands[mode.turning]);
+        self.face.stands = real;
+        let mut close = real;
+        close[mode.across] = mode.centre + FaceMode::nearest(from, to);
+        self.extremes.cover(&close);
+        let axis = &self.base.axes[mode.across];
+        let ends = [close, real].map(|joints| joints[mode.across]);
+        let over = ends.into_iter().find_map(|value| {
+            let limit = passed(axis.travel, value, AT_END)?;
+            Some(OverTravel { joint: mode.across, value, limit })
+        });
+        if let Some(over) = over {
+            let refused = PlacementError::OverTravel { over, tried: 1 };
+            self.findings.at(block.line, refusal::refused(self.base, &refused));
+        }
+        [stands, real]
+    }
+
+    /// A move at a feed of so many mm/min.
+    fn go_at(&mut self, line: u64, feed: f64, words: &[f64]) {
+        let whole = libm::floor(feed * self.length_unit() * (1.0 + 1e-9));
+        self.linear(line, Feed::PerMinute(whole.max(1.0)), words);
+    }
+
+    fn linear(&mut self, line: u64, feed: Feed, words: &[f64]) {
+        self.writer.push(line, Event::Linear { tool: None, feed, words });
+    }
+
+    /// The word along the tool near the retract, or that of the block, if it is higher.
+    fn height(&self, block: &MotionBlock, along: usize) -> f64 {
+        let own = block.words[along];
+        let mut retract = self.base.frame.retract.iter();
+        let Some((joint, value)) = retract.next() else {
+            return own;
+        };
+        let axis = &self.base.axes[*joint];
+        let up = libm::copysign(1.0, axis.joint.direction.dot(&self.base.tool_axis));
+        let way = (value - block.joints[*joint]) * up - BELOW;
+        match way > 0.0 {
+            true => self.rounded(along, own + way * up * self.factor(*joint) * self.length_unit()),
+            false => own,
+        }
+    }
+
+    /// What the word of the axis at `joint` multiplies it by.
+    fn factor(&self, joint: usize) -> f64 {
+        self.base.word_map.as_ref().map_or(1.0, |map| map.factor(joint))
+    }
+
+    /// Units of the program in a mm.
+    fn length_unit(&self) -> f64 {
+        1.0 / axis_words::unit_length(self.base.control.units)
+    }
+
+    fn rounded(&self, place: usize, value: f64) -> f64 {
+        self.words.printed(place, value).unwrap_or(value)
+    }
+
+    fn face_words(&self, mode: &FaceMode) -> Option<FaceWords> {
+        let order = axis_words::order(self.base);
+        let place = |joint: usize| order.iter().position(|other| *other == joint);
+        let along = (0..self.base.axes.len())
+            .find(|joint| *joint != mode.turning && *joint != mode.across)?;
+        let inside = self.machine.word_map.as_ref().map_or(1.0, |map| map.factor(mode.across));
+        let scales = [inside, self.factor(mode.across)].map(|scale| scale * self.length_unit());
+        Some(FaceWords {
+            turning: place(mode.turning)?,
+            across: place(mode.across)?,
+            along: place(along)?,
+            scales,
+            down: self.base.axes[along].max_feed,
+        })
+    }
+}

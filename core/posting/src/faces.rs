@@ -1,0 +1,225 @@
+//! Operations that are written in polar interpolation of the control (`[mode.face]`): found by a first pass, begun and ended
+//! as the second comes to them.
+//!
+//! A file is taken apart where the tool leaves the part, as for tilted planes. Of such a part all is written in the mode if
+//! some cut asks for the part to turn, the tool lies along its axis all the time, and no cut comes too near to it.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use post_machine::description::Machine;
+use post_machine::diagnostic::{Diagnostic, Short};
+use post_machine::face_mode::FaceMode;
+
+use crate::preview::{FilePreview, MOST_STRETCHES};
+use crate::program::spline::flatten;
+use crate::program::{Command, MoveFeed, ProgramStep};
+
+/// Tool axes that differ by less are one, as unit vectors.
+const SAME: f64 = 1e-9;
+
+/// A cut that leads past the axis by less, mm, leads through it.
+const THROUGH: f64 = 1e-9;
+
+/// Chords by which a curve is looked at, mm.
+const CHORD: f64 = 0.01;
+
+/// Lines of a CL file between two places where the tool leaves the part, whose cuts turn the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceRange {
+    /// Line of the first motion.
+    pub first: u64,
+    /// Line of the last.
+    pub last: u64,
+    /// How near its cuts come to the line of the turning axis, mm.
+    pub nearest: f64,
+}
+
+/// A step of the program after which what follows is another part of the file.
+fn parts(step: &ProgramStep) -> bool {
+    match step {
+        ProgramStep::Plane(_)
+        | ProgramStep::Command(Command::Operation(_) | Command::OperationEnd) => true,
+        ProgramStep::Command(command) => command.leaves(),
+        _ => false,
+    }
+}
+
+/// Finds such lines.
+#[derive(Debug)]
+pub struct FaceFinder {
+    /// Directions of the linear axis that leads to the line, and of the coordinate across it, part frame.
+    plane: [Vector3<f64>; 2],
+    /// The tool axis, part frame.
+    axis: Vector3<f64>,
+    /// Where the tool stands, mm; none before the first point.
+    at: Option<Vector3<f64>>,
+    present: Option<FaceRange>,
+    /// A cut of this part of the file turns the part; the tool axis leans somewhere.
+    turns: bool,
+    leans: bool,
+    found: Vec<FaceRange>,
+}
+
+impl FaceFinder {
+    /// For a machine whose control has the mode.
+    pub fn new(machine: &Machine) -> Option<Self> {
+        let (_, face) = machine.in_face()?;
+        let mode = face.face.as_ref()?;
+        let direction = |place: usize| face.axes[place].joint.direction;
+        Some(Self {
+            plane: [direction(mode.across), direction(mode.turning)],
+            axis: machine.tool_axis,
+            at: None,
+            present: None,
+            turns: false,
+            leans: false,
+            found: Vec::new(),
+        })
+    }
+
+    /// Takes a step.
+    pub fn step(&mut self, line: u64, step: &ProgramStep) {
+        match step {
+            ProgramStep::Move(motion) => {
+                self.motion(line, motion.tip, motion.axis, motion.pace != MoveFeed::Rapid);
+            }
+            ProgramStep::Arc(step) => {
+                self.motion(line, step.arc.at(0.0), step.start_axis, true);
+                let (count, _) = step.arc.chords(CHORD);
+                for piece in 1..=count.min(4096) {
+                    let tip = step.arc.at(piece as f64 / count.min(4096) as f64);
+                    self.motion(line, tip, step.end.axis, true);
+                }
+            }
+            ProgramStep::Spline(step) => {
+                let axis = step.end.axis;
+                flatten(&step.spline, CHORD, &mut |tip, _| self.motion(line, tip, axis, true));
+            }
+            ProgramStep::Cycle(step) => {
+                self.motion(line, step.point.tip, step.point.axis, false);
+            }
+            other if parts(other) => self.part_ends(),
+            _ => {}
+        }
+    }
+
+    fn motion(&mut self, line: u64, tip: Vector3<f64>, axis: Vector3<f64>, cuts: bool) {
+        let from = self.at.replace(tip);
+        self.leans |= (axis - self.axis).norm() > SAME;
+        let range = FaceRange { first: line, last: line, nearest: f64::INFINITY };
+        let present = self.present.get_or_insert(range);
+        present.last = line;
+        let Some(from) = from.filter(|_| cuts) else {
+            return;
+        };
+        let [from, to] = [from, tip].map(|tip| self.plane.map(|way| way.dot(&tip)));
+        let way = libm::hypot(to[0] - from[0], to[1] - from[1]);
+        let moment = libm::fabs(from[0] * to[1] - from[1] * to[0]);
+        self.turns |= moment > THROUGH * way;
+        present.nearest = present.nearest.min(FaceMode::nearest(from, to));
+    }
+
+    fn part_ends(&mut self) {
+        let (turns, leans) = (std::mem::take(&mut self.turns), std::mem::take(&mut self.leans));
+        self.at = None;
+        if let Some(range) = self.present.take()
+            && turns
+            && !leans
+            && self.found.len() < MOST_STRETCHES
+        {
+            self.found.push(range);
+        }
+    }
+
+    /// The file has ended.
+    pub fn finish(mut self) -> Vec<FaceRange> {
+        self.part_ends();
+        self.found
+    }
+}
+
+/// What is to be done about the mode ahead of a step.
+pub(crate) enum FaceChange {
+    /// The machine of this name from here on; empty: the mode ends.
+    Machine(String),
+    /// The operation is written without it.
+    Without(Diagnostic),
+}
+
+/// Begins and ends the mode.
+#[derive(Debug)]
+pub(crate) struct FaceTracker {
+    ahead: Arc<FilePreview>,
+    next: usize,
+    name: String,
+    pole: f64,
+    on: bool,
+}
+
+impl FaceTracker {
+    /// For a machine whose control has the mode.
+    pub(crate) fn new(machine: &Machine, ahead: Arc<FilePreview>) -> Option<Self> {
+        let (name, face) = machine.in_face()?;
+        let pole = face.face.as_ref()?.pole;
+        Some(Self { ahead, next: 0, name: name.to_owned(), pole, on: false })
+    }
+
+    /// The mode is on.
+    pub(crate) fn is_on(&self) -> bool {
+        self.on
+    }
+
+    /// What changes ahead of a step from `line`.
+    pub(crate) fn change(&mut self, line: u64, step: &ProgramStep) -> Option<FaceChange> {
+        if parts(step) {
+            return self.end();
+        }
+        let motion = matches!(
+            step,
+            ProgramStep::Move(_)
+                | ProgramStep::Arc(_)
+                | ProgramStep::Spline(_)
+                | ProgramStep::Cycle(_)
+        );
+        if self.on || !motion {
+            return None;
+        }
+        while self.ahead.faces.get(self.next).is_some_and(|range| range.last < line) {
+            self.next += 1;
+        }
+        let range = self.ahead.faces.get(self.next).filter(|range| range.first <= line)?;
+        if range.nearest < self.pole {
+            self.next += 1;
+            return Some(FaceChange::Without(self.too_near(range)));
+        }
+        self.on = true;
+        Some(FaceChange::Machine(self.name.clone()))
+    }
+
+    /// The mode ends, if it is on.
+    pub(crate) fn end(&mut self) -> Option<FaceChange> {
+        std::mem::take(&mut self.on).then(|| {
+            self.next += 1;
+            FaceChange::Machine(String::new())
+        })
+    }
+
+    /// Nothing begins or ends up to `line`, and moves are those of the machine itself.
+    pub(crate) fn stays_until(&self, line: u64) -> bool {
+        !self.on && self.ahead.faces.get(self.next).is_none_or(|range| line < range.first)
+    }
+
+    fn too_near(&self, range: &FaceRange) -> Diagnostic {
+        let message = format!(
+            "the cuts of this operation, up to line {}, come to {} mm from the line of the turning axis, and [mode.face] goes no \
+             nearer than {} mm: it is written in words of the axes",
+            range.last,
+            Short(range.nearest),
+            Short(self.pole)
+        );
+        Diagnostic::warning("mode", message).help(
+            "a smaller pole of [mode.face], where the control holds the turning axis to its feed; else nothing is wrong",
+        )
+    }
+}

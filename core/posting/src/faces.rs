@@ -2,7 +2,7 @@
 //! as the second comes to them.
 //!
 //! A file is taken apart where the tool leaves the part, as for tilted planes. Of such a part all is written in the mode if
-//! some cut asks for the part to turn, the tool lies along its axis all the time, and no cut comes too near to it.
+//! some cut asks for the part to turn, the tool lies along its axis all the time, and no way comes too near to it.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub struct FaceRange {
     pub first: u64,
     /// Line of the last.
     pub last: u64,
-    /// How near its cuts come to the line of the turning axis, mm.
+    /// How near its ways, rapids among them, come to the line of the turning axis, mm.
     pub nearest: f64,
 }
 
@@ -110,13 +110,13 @@ impl FaceFinder {
         let range = FaceRange { first: line, last: line, nearest: f64::INFINITY };
         let present = self.present.get_or_insert(range);
         present.last = line;
-        let Some(from) = from.filter(|_| cuts) else {
+        let Some(from) = from else {
             return;
         };
         let [from, to] = [from, tip].map(|tip| self.plane.map(|way| way.dot(&tip)));
         let way = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let moment = libm::fabs(from[0] * to[1] - from[1] * to[0]);
-        self.turns |= moment > THROUGH * way;
+        self.turns |= cuts && moment > THROUGH * way;
         present.nearest = present.nearest.min(FaceMode::nearest(from, to));
     }
 
@@ -212,7 +212,7 @@ impl FaceTracker {
 
     fn too_near(&self, range: &FaceRange) -> Diagnostic {
         let message = format!(
-            "the cuts of this operation, up to line {}, come to {} mm from the line of the turning axis, and [mode.face] goes no \
+            "the ways of this operation, up to line {}, come to {} mm from the line of the turning axis, and [mode.face] goes no \
              nearer than {} mm: it is written in words of the axes",
             range.last,
             Short(range.nearest),

@@ -86,6 +86,7 @@ impl<'a> Trajectory<'a> {
                 tasks: ProgramTasks::new(machine),
                 planned: Vec::new(),
                 ended: false,
+                refused: false,
             },
             planner: Planner::new(machine),
             points: None,
@@ -197,6 +198,8 @@ struct TaskReader<'a> {
     tasks: ProgramTasks,
     planned: Vec<ProgramTask>,
     ended: bool,
+    /// That its axes are not followed was told.
+    refused: bool,
 }
 
 impl TaskReader<'_> {
@@ -213,7 +216,7 @@ impl TaskReader<'_> {
             }
             let head = head(done, name);
             self.tasks.take(done, &mut self.planned);
-            if let Some(head) = head {
+            if let Some(head) = head.filter(|_| !std::mem::replace(&mut self.refused, true)) {
                 self.run.refuse(head);
             }
         }

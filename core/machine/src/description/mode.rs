@@ -53,7 +53,7 @@ keys! {
         letter: Option<Spanned<String>> = Bounds::pattern("^[A-CU-Z]$"),
         /// The word of the linear axis is a radius in it, whatever `[word]` makes of it outside.
         radius: bool = Bounds::OFF,
-        /// An operation whose cuts come nearer to the line of the turning axis, mm, is written without it; 1 if not said.
+        /// An operation that comes nearer to the line of the turning axis, mm, is written without it; 1 if not said.
         pole: Option<KeyedNumber> = NEAREST,
     }
 }

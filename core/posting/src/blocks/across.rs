@@ -177,6 +177,8 @@ impl<'a> AcrossChoice<'a> {
                 | Command::Message(_)
                 | Command::Coolant(_)
                 | Command::Spindle(_)
+                | Command::Preselect(_)
+                | Command::Compensate(_)
                 | Command::Smoothing(_)
                 | Command::Index { .. }
                 | Command::Leave

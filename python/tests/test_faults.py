@@ -189,9 +189,11 @@ def test_a_call_that_fails_leaves_old_or_new(name: str, folder: Path) -> None:
         for error in errors
     ]
     assert len(cases) > 50
-    most = often(40, len(cases))
+    most = often(15, len(cases))
     seen: Counter[tuple[str, str]] = Counter()
-    for call, number, error, line in cases[:: max(1, len(cases) // most)]:
+    # The moment in which files take their names, and each so many of all.
+    chosen = [case for case in cases if case[0] == "renameat"] + cases[:: max(1, len(cases) // most)]
+    for call, number, error, line in chosen:
         old = tell_old(folder, verb.written)
         made, _ = traced(folder, verb, call, f"{call}:error={error}:when={number}")
         where = (call, number, error, line, made.returncode, made.stderr)
@@ -239,6 +241,27 @@ def test_an_input_that_cannot_be_read_is_told(name: str, folder: Path) -> None:
             assert "Input/output error" in made.stderr, (number, line, made.stderr)
         else:
             assert stand(folder, verb.written) == new, (number, line, made.stderr)
+
+
+@pytest.mark.xfail(strict=True, reason="a file that is read again is opened by its name, whatever has it by then")
+def test_a_page_is_of_the_cl_file_that_the_program_is_of(folder: Path) -> None:
+    """The file is replaced by another before it is read for the page: that is told, or the page is of the first one."""
+    verb = Verb("post", ("part.cls", "-m", MACHINE, "-o", "part.nc", "--report", "part.html", "-q"), ("part.nc", "part.html"))
+    new = news(verb, folder)
+    _, calls = traced(folder, verb, "openat")
+    last = [number for number, line in places(calls, "openat") if "part.cls" in line][-1]
+    text = (folder / "part.cls").read_text()
+    (folder / "other.cls").write_text(re.sub("GOTO/(-?)", r"GOTO/\g<1>9", text))
+
+    def replace() -> None:
+        (folder / "other.cls").replace(folder / "part.cls")
+
+    # Well behind the moment in which posting has opened it, and ahead of the last time.
+    timer = threading.Timer(1.0, replace)
+    timer.start()
+    made, _ = traced(folder, verb, "openat", f"openat:delay_enter=2500000:when={last}")
+    timer.join()
+    assert made.returncode == 1 or stand(folder, verb.written) == new
 
 
 def writing(folder: Path, *arguments: str) -> "tuple[subprocess.Popen[str], list[str]]":

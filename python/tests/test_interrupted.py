@@ -57,7 +57,7 @@ def test_a_signal_at_any_call_leaves_old_or_new(name: str, sent: str, folder: Pa
     _, calls = traced(folder, verb, ",".join(MOMENTS))
     moments = [(call, number) for call in MOMENTS for number, _ in places(calls, call)]
     # Of each kind of call the last ones are those of the moment in which files take their names.
-    step = max(1, len(moments) // often(25, len(moments)))
+    step = max(1, len(moments) // often(8, len(moments)))
     chosen = [moment for moment in moments if moment[0] in ("linkat", "renameat")] + moments[::step]
     seen: Counter[tuple[int, str]] = Counter()
     for call, number in chosen:
@@ -82,7 +82,7 @@ def test_a_kill_at_any_call_leaves_each_text_whole_and_no_temporary_file_to_the_
     tell_old(folder, verb.written)
     _, calls = traced(folder, verb, ",".join(MOMENTS))
     moments = [(call, number) for call in MOMENTS for number, _ in places(calls, call)]
-    step = max(1, len(moments) // often(25, len(moments)))
+    step = max(1, len(moments) // often(8, len(moments)))
     chosen = [moment for moment in moments if moment[0] in ("linkat", "renameat")] + moments[::step]
     mixed: set[str] = set()
     kept = 0

@@ -169,6 +169,42 @@ def test_a_signal_at_any_moment(sent: signal.Signals, folder: Path) -> None:
     assert [name for name in left(folder) if not name.endswith(".old")] == []
 
 
+@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGKILL])
+def test_a_batch_that_was_ended_goes_on_to_the_same_table(sent: signal.Signals, folder: Path) -> None:
+    """Whatever the journal holds by then, half a line among it; several times in one batch."""
+    line = ["batch", "part.cls", "two.cls", "-m", MACHINE, "--mount", "0,0,-60:60:15", "-o", "rows.csv", "-q"]
+    begun = time.perf_counter()
+    assert run(folder, *line).returncode == 0
+    took = time.perf_counter() - begun
+    whole = (folder / "rows.csv").read_text()
+    assert len(whole.splitlines()) == 19, "nine places for two files"
+    environment = {**os.environ, "TMPDIR": str(folder.parent / "waiting")}
+    moment = drawn(100 + int(sent))
+    journal = folder / "rows.csv.journal"
+    lines: Counter[int] = Counter()
+    for _ in range(often(2, 60)):
+        for path in (folder / "rows.csv", journal):
+            path.unlink(missing_ok=True)
+        for _ in range(3):
+            child = subprocess.Popen(
+                [COMMAND, *line, "--resume"], cwd=folder, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+            )
+            time.sleep(float(moment.uniform(0.0, took)))
+            child.send_signal(sent)
+            _, told = child.communicate(timeout=60)
+            assert child.returncode in (0, -sent, 128 + sent), told
+            assert not (folder / "rows.csv").exists() or (folder / "rows.csv").read_text() == whole
+        # A machine that is switched off may leave half a line besides.
+        if journal.is_file() and moment.random() < 0.5:
+            os.truncate(journal, int(moment.integers(0, journal.stat().st_size + 1)))
+        lines[journal.read_bytes().count(b"\n") if journal.is_file() else 0] += 1
+        resumed = run(folder, *line, "--resume")
+        assert resumed.returncode == 0, resumed.stderr
+        assert (folder / "rows.csv").read_text() == whole
+        assert [name for name in left(folder) if not name.endswith(".old")] == []
+    print(f"lines of the journal when it was gone on with: {dict(lines)}")
+
+
 LONG = 20_000
 
 

@@ -1,4 +1,4 @@
-"""What tests of faults and of sameness share: every verb that writes, with all that it can write, and what stands after."""
+"""What tests of faults and of sameness share: every verb that writes, with all that it can write, and what stands there."""
 
 import hashlib
 import os

@@ -49,7 +49,7 @@ def test_threads(verb: Verb, folder: Path) -> None:
 def test_runs(verb: Verb, folder: Path) -> None:
     """Hash tables are seeded anew in each run, and addresses are drawn."""
     first = made(folder, verb)
-    for count in range(often(3, 30)):
+    for count in range(often(2, 30)):
         assert made(folder, verb, environment={"FILLER": "x" * (count * 3337)}) == first
     if tool("setarch"):
         assert made(folder, verb, before=["setarch", "-R"]) == first
@@ -58,11 +58,11 @@ def test_runs(verb: Verb, folder: Path) -> None:
 @EACH
 def test_time_zone_umask_and_environment(verb: Verb, folder: Path) -> None:
     first = made(folder, verb)
-    for zone in ("UTC", "Asia/Kathmandu", "Pacific/Kiritimati", "XYZ+14:37"):
+    for zone in ("Asia/Kathmandu", "XYZ+14:37", "UTC", "Pacific/Kiritimati")[: often(2, 4)]:
         assert made(folder, verb, environment={"TZ": zone}) == first, zone
-    for umask in (0, 0o077, 0o277):
+    for umask in (0, 0o277, 0o077)[: often(2, 3)]:
         assert made(folder, verb, umask=umask) == first, oct(umask)
-    told = {"COLUMNS": "17", "TERM": "dumb", "NO_COLOR": "1", "HOME": "/nowhere", "LANGUAGE": "de", "RUST_BACKTRACE": "full"}
+    told = {"COLUMNS": "17", "TERM": "dumb", "NO_COLOR": "1", "HOME": "/nowhere", "RUST_BACKTRACE": "full"}
     assert made(folder, verb, environment=told) == first
     emptied = made(folder, verb, before=["env", "-i", f"TMPDIR={folder.parent / 'waiting'}"])
     assert emptied == first
@@ -208,7 +208,7 @@ def test_processor(verb: Verb, processor: str, folder: Path) -> None:
     first = made(folder, verb)
     same = made(folder, verb, before=[emulator(), "-cpu", processor]) == first
     if not same and verb.name in ("post", "predict") and processor not in FUSED:
-        pytest.xfail("servos are worked out by fused multiplications where the processor has them: digits 11 to 17 differ")
+        pytest.xfail("servos are worked out by fused multiplications where the processor has them: digits 11 to 17")
     assert same
 
 

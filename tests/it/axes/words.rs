@@ -166,7 +166,11 @@ fn check_tells_what_words_do() {
 #[test]
 fn a_word_goes_with_the_way_of_the_tip() {
     let per_mm = 0.0333;
-    let setup = || on("xyzac-trt").long(50.0).file(format!("[word.U]\nis = \"{per_mm} * s\"\n"));
+    let setup = || {
+        on("xyzac-trt")
+            .long(50.0)
+            .file(format!("[control]\nrapid = \"rapid\"\n[word.U]\nis = \"{per_mm} * s\"\n"))
+    };
     let text = turning_cuts();
     let made = setup().made(&text);
     let word = |line: &str| {
@@ -187,7 +191,7 @@ fn a_word_goes_with_the_way_of_the_tip() {
     }
     assert!(cuts > 4 && way > 10.0, "{cuts} {way}");
     // The same path without it.
-    let plain = on("xyzac-trt").long(50.0).made(&text);
+    let plain = on("xyzac-trt").long(50.0).with("control.rapid", "rapid").made(&text);
     assert_eq!(plain.blocks.len(), made.blocks.len());
     // Read back, and with one word spoilt.
     let folder = tempfile::tempdir().unwrap();
@@ -197,8 +201,12 @@ fn a_word_goes_with_the_way_of_the_tip() {
         path.to_str().unwrap().to_owned()
     };
     let part = write("part.ncl", &text);
-    let machine =
-        write("m.toml", &format!("extends = \"xyzac-trt\"\n[word.U]\nis = \"{per_mm} * s\"\n"));
+    let machine = write(
+        "m.toml",
+        &format!(
+            "extends = \"xyzac-trt\"\n[control]\nrapid = \"rapid\"\n[word.U]\nis = \"{per_mm} * s\"\n"
+        ),
+    );
     let verify = |nc: &str| {
         post(&[
             "verify",
@@ -221,7 +229,7 @@ fn a_word_goes_with_the_way_of_the_tip() {
         .iter()
         .enumerate()
         .map(|(place, line)| match word(line).filter(|_| place == spoilt) {
-            Some(value) => line.replace(&format!("U{value:.3}"), &format!("U{:.3}", value + 0.5)),
+            Some(value) => line.replace(&format!("U{value:.4}"), &format!("U{:.4}", value + 0.5)),
             None => (*line).to_owned(),
         })
         .collect();

@@ -240,6 +240,11 @@ impl Placer {
             let joints = solver
                 .search(&target, last, self.axis_tolerance)
                 .map_err(PlacementError::Unreachable)?;
+            // A joint to spare may give way elsewhere: here the axes follow one another.
+            if let Some(over) = self.turned_beyond(&joints).filter(|_| !solver.surplus().is_empty())
+            {
+                return Err(PlacementError::OverTravel { over, tried: 0 });
+            }
             return self.settled(target, t, &joints);
         }
         let branches =

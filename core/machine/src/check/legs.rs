@@ -171,7 +171,7 @@ fn assembly_told(probe: &Probe<'_>, proof: AssemblyProof) -> String {
             "one: wherever the legs are inside travel the matrix of their rates is regular, proven by {boxes} boxes of axis values"
         ),
         AssemblyProof::Open { beside } => format!(
-            "not proven to be one beside {}: legs that stand across their way, or in one plane, are singular; less travel of axes or legs leaves such places out",
+            "not proven to be one, in as many boxes of axis values as are looked at: what is left lies beside {}; legs that stand across their way, or in one plane, are singular, and less travel of axes or legs leaves such places out",
             probe.machine().shown(&beside)
         ),
         AssemblyProof::Few => "the legs are fewer than the axes that move them: drives do not tell where the platform stands".to_owned(),

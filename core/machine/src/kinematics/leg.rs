@@ -99,6 +99,10 @@ struct PlatformJoint {
     together: f64,
     /// Bound on its acceleration, mm.
     acceleration: f64,
+    /// Square of the bound on its acceleration where the squares of those shares add up to one, mm².
+    bent: f64,
+    /// Sum of the squares of the speeds that axes give it each by itself, mm².
+    squares: f64,
 }
 
 /// Bounds on a drive over a region.
@@ -108,7 +112,7 @@ pub struct DriveBounds {
     pub first: f64,
     /// Of the second derivative; infinite where nothing is proven.
     pub second: f64,
-    /// Of the second derivative where the squares of the shares of the axes' speeds add up to one.
+    /// Of the second derivative where the squares of the shares of the axes' speeds add up to one, and nothing bends.
     pub(super) together: f64,
     /// How much the drive changes at most for one mm of the platform's joint.
     gain: f64,
@@ -176,7 +180,8 @@ impl Leg {
         point
     }
 
-    /// The drive at `joints`, mm or radians (-π to π); none where the rod does not reach.
+    /// The drive at `joints`, mm or radians (of a crank on the turn about the middle of its travel); none where the rod does
+    /// not reach.
     pub fn value(&self, joints: &Joints) -> Option<f64> {
         self.value_at(self.point(joints))
     }
@@ -201,7 +206,9 @@ impl Leg {
                 }
                 let beside = libm::acos(wanted / reach);
                 let angle = libm::atan2(y, x) + if ahead { beside } else { -beside };
-                Some(libm::remainder(angle, std::f64::consts::TAU))
+                let [least, most] = self.travel.unwrap_or_default();
+                let middle = 0.5 * (least + most);
+                Some(middle + libm::remainder(angle - middle, std::f64::consts::TAU))
             }
         }
     }
@@ -260,6 +267,8 @@ impl Leg {
             speed: 0.0,
             together: 0.0,
             acceleration: 0.0,
+            bent: 0.0,
+            squares: 0.0,
         };
         let mut slides = Slides::default();
         for (place, joint) in self.joints.iter().enumerate().rev() {
@@ -268,6 +277,7 @@ impl Leg {
                 at.centre += joint.direction * middle[place];
                 at.acceleration += bends[place];
                 slides.take(joint.direction, half[place], speeds[place]);
+                at.squares += speeds[place] * speeds[place];
                 continue;
             }
             slides.end(&mut at);
@@ -278,6 +288,10 @@ impl Leg {
             at.centre = joint.point + turn(arm, joint.direction, sine, cosine);
             at.radius += half[place] * far;
             at.acceleration += speeds[place] * (2.0 * at.speed + turning) + bends[place] * far;
+            // The matrix of second derivatives, by the sum of the squares of its entries.
+            let turn = speeds[place] * speeds[place];
+            at.bent += turn * (turning * turning + 2.0 * at.squares);
+            at.squares += turning * turning;
             at.speed += turning;
             at.together = libm::hypot(at.together, turning);
         }
@@ -319,18 +333,18 @@ impl Leg {
         };
         // Nothing times what is not proven is not proven either.
         let proven = |bound: f64| if bound.is_nan() { f64::INFINITY } else { bound };
-        let second = |speed: f64| proven(bend * at.acceleration + turning * speed * speed);
+        let second = |bent: f64, speed: f64| proven(bend * bent + turning * speed * speed);
         DriveBounds {
             first: proven(gain * at.speed),
-            second: second(at.speed),
-            together: second(at.together),
+            second: second(at.acceleration, at.speed),
+            together: second(at.bent.sqrt(), at.together),
             gain: proven(gain),
             radius: at.radius,
         }
     }
 
     /// Least and largest value while each axis stays between its values in `ends`; none where it is not proven to have one
-    /// all over. Radians may pass π.
+    /// all over. Radians may pass the end of a turn.
     pub fn range(&self, [least, most]: [&Joints; 2]) -> Option<[f64; 2]> {
         let middle: Joints = std::array::from_fn(|place| 0.5 * (least[place] + most[place]));
         let half: Joints =
@@ -384,7 +398,8 @@ impl Leg {
         })
     }
 
-    /// A bound on the speed of the drive along a way, by the share of it, at most 0.2 % too large; no closer than `enough`.
+    /// A bound on the speed of the drive along a way, by the share of it, at most 0.2 % too large but where a rod comes to
+    /// stand across its way; no closer than `enough`.
     /// `between` gives the axis values at a share, `bends` bounds their second derivatives by it. Infinite where nothing
     /// is proven.
     pub fn fastest(

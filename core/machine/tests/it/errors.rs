@@ -222,7 +222,7 @@ fn errors_bow_no_more_than_is_told() {
 
 #[test]
 fn an_endless_axis_goes_on_from_its_last_place_to_its_first() {
-    let text = "name = \"table\"\nchain = \"[w C' b X Y Z (S) t]\"\ntool.gauge = [0, 0, 0]\n[axis.X]\nlinear = [1, 0, 0]\n[axis.Y]\nlinear = [0, 1, 0]\n[axis.Z]\nlinear = [0, 0, 1]\n[axis.C]\nrotary = [0, 0, 1]\npoint = [0, 0, 0]\ncyclic = true\n[control]\ndialect = \"fanuc\"\ntcp = \"post\"\n[error.C]\ncolumns = [\"C\", \"EZC\"]\nrows = [[0, 0], [180, 0.01], [270, 0.02]]\n";
+    let text = "name = \"table\"\nchain = \"[w C' b X Y Z (S) t]\"\ntool.gauge = [0, 0, 0]\n[axis.X]\nlinear = [1, 0, 0]\ntravel = [-900, 900]\n[axis.Y]\nlinear = [0, 1, 0]\ntravel = [-900, 900]\n[axis.Z]\nlinear = [0, 0, 1]\ntravel = [-900, 900]\n[axis.C]\nrotary = [0, 0, 1]\npoint = [0, 0, 0]\ncyclic = true\n[control]\ndialect = \"fanuc\"\ntcp = \"post\"\n[error.C]\ncolumns = [\"C\", \"EZC\"]\nrows = [[0, 0], [180, 0.01], [270, 0.02]]\n";
     let machine = load(source("table.toml", text), &[], &mut |_| Err(String::new())).unwrap();
     let chain = machine.solver(0.0).unwrap().chain().clone();
     let c = machine.axes.iter().position(|axis| axis.name == "C").unwrap();

@@ -61,7 +61,7 @@ impl MountRoom {
     /// For a machine as its file describes it; its ends of travel are those that bound.
     ///
     /// # Errors
-    /// What its chain lacks. Where the linear axes do not place the tip alone ([`Solver::closed_form`]), the values of an
+    /// What its chain lacks. Where the linear axes do not place the tip alone ([`Solver::places_tip`]), the values of an
     /// axis are no straight function of the mount, and nothing is gathered.
     pub fn new(machine: &Machine) -> Result<Self, NoClosedForm> {
         let solver = opened(machine).solver(0.0)?;
@@ -74,7 +74,7 @@ impl MountRoom {
             .collect();
         Ok(Self {
             mount: machine.mount,
-            slides: if solver.closed_form() { slides } else { Vec::new() },
+            slides: if solver.places_tip() { slides } else { Vec::new() },
             solver,
             rates: None,
             found: BTreeMap::new(),

@@ -19,7 +19,7 @@ use super::inverse::Solver;
 use super::kept_tip::TcpBlock;
 
 /// Halvings of a way before the bound on a speed is taken as it is.
-const DEEPEST: u32 = 12;
+const DEEPEST: u32 = 18;
 
 /// A largest speed that was looked into is known so well.
 const CLOSE: f64 = 1.002;
@@ -456,8 +456,12 @@ impl Leg {
         let of = |half: &WayPiece, certain: &mut f64| {
             self.fastest_on(half, way, enough, certain, halvings - 1)
         };
-        let [a, b] = [of(&halves[0], certain), of(&halves[1], certain)];
-        a.max(b)
+        let first = of(&halves[0], certain);
+        // Where nothing is proven of one half the other does not matter.
+        if first.is_infinite() {
+            return first;
+        }
+        first.max(of(&halves[1], certain))
     }
 }
 

@@ -195,13 +195,11 @@ fn any_leg(rng: &mut Rng) -> (Machine, Joints) {
         });
         // Where the drive is not steep: beside that nothing is proven.
         let rates = leg.rates(&joints);
+        // Near its dead centres a crank turns by far more than a hundredth of a radian a mm.
+        let size = if leg.turns() { 0.01 } else { 1.0 };
         let steep = |(place, rate): (usize, f64)| {
-            rate.abs()
-                > if machine.axes.get(place).is_some_and(|axis| axis.joint.rotary) {
-                    400.0
-                } else {
-                    3.0
-                }
+            let turns = machine.axes.get(place).is_some_and(|axis| axis.joint.rotary);
+            rate.abs() > size * if turns { 400.0 } else { 2.0 }
         };
         if rates.is_some_and(|rates| !rates.into_iter().enumerate().any(steep)) {
             return (machine, joints);

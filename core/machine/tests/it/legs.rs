@@ -231,6 +231,10 @@ fn what_is_told_of_a_region_holds_all_over_it() {
             leg.value(&std::array::from_fn(|place| from[place] + share * (to[place] - from[place])))
         };
         let seen = |share: f64| match (at(share), at(share + 1e-5)) {
+            // Cranks count by turns.
+            (Some(a), Some(b)) if leg.turns() => {
+                libm::remainder(b - a, std::f64::consts::TAU).abs() / 1e-5
+            }
             (Some(a), Some(b)) => (b - a).abs() / 1e-5,
             _ => 0.0,
         };

@@ -468,8 +468,9 @@ fn fixtures_that_were_put_in_the_way_are_all_found() {
         let apart = apart.fold(f64::INFINITY, f64::min);
         let Some((line, ..)) = first else {
             clear_ones += u32::from(clear);
-            // Between the ends of motions it may come nearer, not on the way down alone.
-            assert!(clear || apart < 8.0, "{apart} {block:?} {said}");
+            // Between the ends of motions it may come nearer: then a place is told at which it hits.
+            let hit = said.contains("planted hits cutter T3 at");
+            assert!(clear || hit || apart < 8.0, "{apart} {block:?} {said}");
             continue;
         };
         hits += 1;

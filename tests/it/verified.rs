@@ -1,6 +1,6 @@
 //! Every program of these tests, read back and held against its CL file in the run that makes it.
 
-use crate::common::{CASES, check_numbers, post};
+use crate::common::{CASES, check_numbers, post, root};
 use crate::library::LIBRARY;
 
 use std::fs;
@@ -93,6 +93,30 @@ fn the_verb_tells_what_it_finds_and_where() {
     // Within a wider tolerance it is good.
     let wide = verify(bad_name, &[&length[..], &["--tolerance", "0.2"]].concat());
     assert_eq!(wide.code, 0, "{}", wide.err);
+}
+
+#[test]
+fn the_summary_says_whether_it_holds_and_why_not() {
+    let (folder, program) = plate();
+    let json = folder.path().join("found.json");
+    let summary = |against: &str| -> (i32, Value) {
+        let more = ["--tool-length", "80", "-q", "--summary", json.to_str().unwrap()];
+        let line = ["verify", &program, "-m", "vmc", "--against", against];
+        let run = post(&[&line[..], &more].concat());
+        (run.code, serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap())
+    };
+    let (code, good) = summary(PLATE);
+    assert_eq!((code, &good["holds"], &good["refused"]), (0, &true.into(), &Value::Array(vec![])));
+    // The path is as asked: what is wrong is a line of the CL file.
+    let bad = folder.path().join("bad.ncl");
+    let text = fs::read_to_string(root().join(PLATE)).unwrap();
+    let lines = text.lines().count();
+    fs::write(&bad, text.trim_end().to_owned() + "\nQUUX/1,2\n").unwrap();
+    let (code, told) = summary(bad.to_str().unwrap());
+    assert_eq!((code, &told["holds"], &told["faults"]), (1, &false.into(), &Value::Array(vec![])));
+    let [why] = &told["refused"].as_array().unwrap()[..] else { panic!("{told}") };
+    assert!(why["message"].as_str().unwrap().contains("QUUX"), "{why}");
+    assert_eq!((&why["file"], &why["line"]), (&bad.to_str().into(), &(lines as u64 + 1).into()));
 }
 
 #[test]

@@ -33,6 +33,7 @@ use crate::report::{
 use crate::session::Session;
 use crate::settings::{JobSettings, MakingSettings, ThreadSettings};
 use crate::summary::{self, SummaryJson};
+use crate::verify::VerifySummary;
 
 /// What a job sets over the machine file so that its program is numbered so.
 fn number_setting(
@@ -163,7 +164,8 @@ impl ProgramOutcome {
     pub fn told(&self) -> SummaryJson<'_> {
         SummaryJson {
             report: &self.report,
-            verification: self.verification.as_ref(),
+            // One that does not hold is refused before anything is told of it.
+            verification: self.verification.as_ref().map(|found| VerifySummary::of(found, &[])),
             clearance: self.clearance.as_ref().map(ClearanceFound::summary),
             prediction: self.prediction.as_ref(),
             servo_compensation: self.compensation.as_ref(),

@@ -17,6 +17,7 @@ use crate::operations::LONGEST_LIST;
 use crate::predict::Prediction;
 use crate::text::{at_most, clock, number};
 use crate::text_table::NamedValues;
+use crate::verify::VerifySummary;
 use crate::{compensate, plan_rounds};
 
 /// What the summary tells as JSON.
@@ -27,7 +28,7 @@ pub struct SummaryJson<'a> {
     pub report: &'a PostingReport,
     /// What reading the program back has found.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub verification: Option<&'a Verification>,
+    pub verification: Option<VerifySummary<'a>>,
     /// What was proven of it: nothing hits anything.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance: Option<ClearanceSummary>,
@@ -113,7 +114,7 @@ fn rows(rows: &mut NamedValues, found: &SummaryJson<'_>, origin: impl Fn(&Plugin
         "rapids",
         report.rapids_along_axes.then(|| along_axes(report, report.rapid_deviation_mm)),
     );
-    rows.row_if("read back", verification.map(as_asked));
+    rows.row_if("read back", verification.as_ref().map(|held| as_asked(held.found)));
     rows.row_if("clearance", clearance.as_ref().map(ClearanceSummary::fact));
     for used in report.axes.iter().filter(|axis| axis.min <= axis.max) {
         rows.row(format_args!("axis {}", used.name), used_of(used));

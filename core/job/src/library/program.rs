@@ -19,6 +19,7 @@ use crate::session::Session;
 use crate::settings::{
     JobSettings, MakingSettings, OutputSettings, ReadingSettings, ThreadSettings, tell,
 };
+use crate::verify::VerifySummary;
 
 /// A program that is asked for.
 #[derive(Clone, Debug)]
@@ -301,7 +302,10 @@ impl MadeProgram {
             let held = maker.read_back(&self.part, self.moved, &mut source, program)?;
             match held.is_wrong() {
                 true => Err(held.findings.into()),
-                false => Ok((files::json(&held.found), held.findings)),
+                false => {
+                    let json = files::json(&VerifySummary::of(&held.found, &held.findings));
+                    Ok((json, held.findings))
+                }
             }
         });
         let ((json, found), mut findings) = held?;

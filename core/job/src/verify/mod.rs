@@ -1,19 +1,19 @@
 //! An NC program held against the CL file that it was made from.
 
 mod page;
+mod summary;
 
 use post_machine::description::Machine;
 use post_readback::BlockEffect;
 use post_readback::interpret::Limits;
-use post_readback::verify::{BlockReport, Verification};
-use serde::Serialize;
+use post_readback::verify::BlockReport;
 
 use super::JobMachine;
 use super::nc_program::{self, ProgramFile};
 use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyWatch};
 use super::report::{ClWindow, ClearanceRows, ExtraColumns, MotionRows};
 use super::result_files::ResultFiles;
-use crate::clearance::{self, ClearanceFound, ClearanceSummary, Hearer};
+use crate::clearance::{self, ClearanceFound, Hearer};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job_file::is_marked;
@@ -21,6 +21,8 @@ use crate::operations;
 use crate::session::Session;
 use crate::settings::{JobSettings, ReportSettings, ThreadSettings};
 use page::VerifyPage;
+
+pub use summary::{RefusalReason, VerifySummary};
 
 const MAP: Role = Role { what: "map", remedy: "name another file with --map" };
 
@@ -71,15 +73,6 @@ pub struct Verified {
     pub tolerances: [Option<f64>; 2],
     /// A text went to standard output.
     pub printed: bool,
-}
-
-/// What is told as JSON.
-#[derive(Serialize)]
-struct VerifySummary<'a> {
-    #[serde(flatten)]
-    found: &'a Verification,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    clearance: Option<ClearanceSummary>,
 }
 
 /// Holds a program against a CL file; what is wanted beside is written whether it is right or wrong.
@@ -153,7 +146,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     };
     if let Some(file) = &mut texts.summary {
         let clearance = clearance.as_ref().map(ClearanceFound::summary);
-        let told = VerifySummary { found: &held.found, clearance };
+        let told = VerifySummary { clearance, ..VerifySummary::of(&held.found, &held.findings) };
         file.write_bytes(files::json(&told).as_bytes())?;
     }
     let tolerances = reading.tolerances;

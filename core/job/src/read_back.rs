@@ -211,7 +211,11 @@ pub fn verify(
         cut_path: Some(CutPath::when_asked(bounds, Box::new(again), along)),
     };
     let held = hold(reading, against, name, input, watch)?;
-    findings.extend(held.findings);
+    // It is read more than once: what another pass tells too, and what it alone has met, such as a disk that fails.
+    let told = findings.len();
+    let news = held.findings.into_iter().filter(|finding| !findings[..told].contains(finding));
+    let news: Vec<Diagnostic> = news.collect();
+    findings.extend(news);
     Ok(VerifiedProgram { findings, ..held })
 }
 
@@ -372,6 +376,7 @@ pub fn hold<C: Course>(
         }
     }
     drop(run);
+    findings.extend(found.course_faults.iter().cloned());
     findings.extend(noticed(name, &found));
     let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
     for fault in &found.faults {

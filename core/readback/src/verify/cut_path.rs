@@ -34,12 +34,14 @@ pub struct CutPath {
     /// How far the guided point stands above the tip, mm.
     along: f64,
     places: Vec<ToolPlace>,
+    /// What of a path that was looked up when somebody asked cannot be understood, or not be read.
+    faults: Vec<Diagnostic>,
 }
 
 impl CutPath {
     /// An empty path; the guided point stands `along` mm above the tip.
     pub fn new(along: f64) -> Self {
-        Self { kept: Octree::new(), waiting: None, along, places: Vec::new() }
+        Self { kept: Octree::new(), waiting: None, along, places: Vec::new(), faults: Vec::new() }
     }
 
     /// The path of `course`, which is read when somebody asks for more than `bounds` tell of it.
@@ -50,11 +52,16 @@ impl CutPath {
     /// Its places, which are looked up then.
     fn places(&mut self) -> &Octree {
         if let Some(mut waiting) = self.waiting.take() {
-            // What is wrong with it the first pass has told.
-            let (path, _) = Self::of(&mut *waiting.course, self.along);
+            let (path, faults) = Self::of(&mut *waiting.course, self.along);
             self.kept = path.kept;
+            self.faults = faults;
         }
         &self.kept
+    }
+
+    /// What of a path that was looked up when somebody asked is wrong.
+    pub(super) fn into_faults(self) -> Vec<Diagnostic> {
+        self.faults
     }
 
     /// A point is surely farther than `near` mm from the path, and from what is known of it.

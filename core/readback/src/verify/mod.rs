@@ -40,7 +40,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Rapid};
-use post_machine::diagnostic::{Diagnostic, Severity, SourceFiles};
+use post_machine::diagnostic::{Severity, SourceFiles};
 use post_machine::kinematics::Joints;
 use post_plugin::Lengths;
 
@@ -380,12 +380,14 @@ impl<'m, C: Course> Verifier<'m, C> {
             }
             told => self.found.part_place = told.map(|(_, told)| told),
         }
+        let mut faults = self.track.faults;
+        for fault in self.cut_path.into_faults() {
+            if !faults.contains(&fault) {
+                faults.push(fault);
+            }
+        }
+        self.found.course_faults = faults;
         self.found
-    }
-
-    /// What is wrong with the course itself, so far.
-    pub fn course_faults(&self) -> &[Diagnostic] {
-        &self.track.faults
     }
 
     /// What was found so far.

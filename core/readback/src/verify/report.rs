@@ -49,6 +49,9 @@ pub struct Verification {
     /// How much travel the program needs, where nobody says where the part sits and not all of it lies inside.
     #[serde(skip)]
     pub part_place: Option<Diagnostic>,
+    /// What of the course could not be understood, or not be read.
+    #[serde(skip)]
+    pub course_faults: Vec<Diagnostic>,
     /// Times that the tool left a cut and came back to where it left.
     pub excursions: u64,
     /// Cuts that are slower than the course asks, because an axis could not go faster, the control takes no larger F by

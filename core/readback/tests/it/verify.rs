@@ -9,7 +9,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_plugin::Lengths;
 use post_readback::course::{Course, CourseItem, CoursePiece, Curve, ReachedPose};
-use post_readback::verify::{BlockReport, CutPath, Verification, Verifier, VerifyRules};
+use post_readback::verify::{BlockReport, CutBounds, CutPath, Verification, Verifier, VerifyRules};
 use post_readback::{
     BlockEffect, Coolants, Corners, CycleCall, CycleKind, Interpolation, MachineState, Motion,
     MotionKind, ProgramEvent, SpindleState, Stance,
@@ -25,6 +25,19 @@ struct Written(VecDeque<CourseItem>);
 impl Course for Written {
     fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
         Ok(self.0.pop_front())
+    }
+}
+
+/// A course that breaks off ahead of its last item, or does not.
+struct Broken(Written, bool);
+
+impl Course for Broken {
+    fn next(&mut self) -> Result<Option<CourseItem>, Box<Diagnostic>> {
+        if self.1 && self.0.0.len() == 1 {
+            self.0.0.clear();
+            return Err(Diagnostic::error("read", "the disk").boxed());
+        }
+        self.0.next()
     }
 }
 
@@ -244,6 +257,23 @@ fn begin() -> Does {
         .rapid(0.0, 0.0, 10.0)
         .rapid(0.0, 0.0, 1.0)
         .cut(0.0, 0.0, -2.0)
+}
+
+#[test]
+fn what_of_a_course_cannot_be_read_in_any_pass_is_told_once() {
+    let does = begin().cut(20.0, 0.0, -2.0).rapid(0.0, 0.0, 10.0);
+    let machine = machine();
+    for [first, again] in [[false, true], [true, false], [true, true], [false, false]] {
+        let course = |breaks| Broken(Written(square().items), breaks);
+        let (bounds, _) = CutBounds::of(&mut course(false), 0.0);
+        let path = CutPath::when_asked(bounds, Box::new(course(again)), 0.0);
+        let mut verifier =
+            Verifier::new(&machine, VerifyRules::of(&machine), course(first)).near(path);
+        does.done.iter().for_each(|done| verifier.take(done, &mut |_| {}));
+        let found = verifier.finish(&mut |_| {});
+        let told: Vec<&str> = found.course_faults.iter().map(|fault| fault.code).collect();
+        assert_eq!(told, vec!["read"; usize::from(first || again)], "{first} {again}");
+    }
 }
 
 #[test]

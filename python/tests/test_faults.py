@@ -212,17 +212,7 @@ def test_a_call_that_fails_leaves_old_or_new(name: str, folder: Path) -> None:
     assert seen["write", "old"] and seen["renameat", "old"]
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.xfail(strict=True, reason=reason)) if reason else name
-        for name, reason in [
-            ("read", ""),
-            ("post", "the page leaves out the path of the CL file where it cannot be read, and says nothing"),
-            ("verify", "a CL file that cannot be read to its end is taken for one that ends there"),
-        ]
-    ],
-)
+@pytest.mark.parametrize("name", ["read", "post", "verify"])
 def test_an_input_that_cannot_be_read_is_told(name: str, folder: Path) -> None:
     verb = BY_NAME[name]
     new = news(verb, folder)

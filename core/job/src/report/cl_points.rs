@@ -3,7 +3,7 @@
 //! Both come as they come: they are kept on the disk, and walked through together when all are there.
 
 use std::collections::VecDeque;
-use std::io::{self, BufReader, Read, Write};
+use std::io::{self, BufRead as _, BufReader, Read, Write};
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
@@ -84,17 +84,24 @@ impl Points {
     }
 }
 
-struct PointReader<R>(R);
+struct PointReader<R>(BufReader<R>);
 
 impl<R: Read> PointReader<R> {
-    fn next(&mut self) -> Option<[f64; 5]> {
-        let mut bytes = [0; 40];
-        self.0.read_exact(&mut bytes).ok()?;
-        let mut values = [0.0; 5];
-        for (value, place) in values.iter_mut().zip(bytes.chunks_exact(8)) {
-            *value = f64::from_le_bytes(place.try_into().ok()?);
+    /// The next point; none at the end.
+    ///
+    /// # Errors
+    /// They cannot be read again.
+    fn next(&mut self) -> Result<Option<[f64; 5]>, Failure> {
+        if self.0.fill_buf().map_err(fault)?.is_empty() {
+            return Ok(None);
         }
-        Some(values)
+        let mut values = [0.0; 5];
+        for value in &mut values {
+            let mut bytes = [0; 8];
+            self.0.read_exact(&mut bytes).map_err(fault)?;
+            *value = f64::from_le_bytes(bytes);
+        }
+        Ok(Some(values))
     }
 }
 
@@ -112,10 +119,10 @@ pub fn pack(
     let (mut path, mut blocks) = (path.read()?, blocks.read()?);
     let mut near: VecDeque<[f64; 5]> = VecDeque::new();
     let mut line = f64::NAN;
-    while let Some([of, x, y, z, rapid]) = path.next() {
+    while let Some([of, x, y, z, rapid]) = path.next()? {
         if of != line {
             line = of;
-            walk(line, &mut near, &mut blocks);
+            walk(line, &mut near, &mut blocks)?;
         }
         let tip = near.front().map_or([0.0; 3], |block| [block[1], block[2], block[3]]);
         let at = Vector3::new(x - tip[0], y - tip[1], z - tip[2]);
@@ -125,26 +132,57 @@ pub fn pack(
 }
 
 /// Goes on to the last of the next blocks that come from a line, if it has one near.
-fn walk(line: f64, near: &mut VecDeque<[f64; 5]>, blocks: &mut PointReader<impl Read>) {
-    let mut fill = |near: &mut VecDeque<[f64; 5]>, count: usize| {
-        while near.len() < count {
-            match blocks.next() {
-                Some(block) => near.push_back(block),
-                None => return,
-            }
+///
+/// # Errors
+/// The blocks cannot be read again.
+fn walk(
+    line: f64,
+    near: &mut VecDeque<[f64; 5]>,
+    blocks: &mut PointReader<impl Read>,
+) -> Result<(), Failure> {
+    let mut fill = |near: &mut VecDeque<[f64; 5]>, count: usize| -> Result<(), Failure> {
+        while near.len() < count
+            && let Some(block) = blocks.next()?
+        {
+            near.push_back(block);
         }
+        Ok(())
     };
-    fill(near, AHEAD);
+    fill(near, AHEAD)?;
     let ahead = near.iter().take(AHEAD);
     let Some(place) = ahead.into_iter().position(|block| block[0] == line) else {
-        return;
+        return Ok(());
     };
     near.drain(..place);
     loop {
-        fill(near, 2);
+        fill(near, 2)?;
         match near.get(1) {
             Some(next) if next[0] == line => near.pop_front(),
-            _ => return,
+            _ => return Ok(()),
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_disk_that_fails_is_no_end() {
+        let row = [0; 40];
+        let mut whole = PointReader(BufReader::new(&row[..]));
+        assert!(whole.next().unwrap().is_some() && whole.next().unwrap().is_none());
+        let mut torn = PointReader(BufReader::new(&row[..39]));
+        assert!(torn.next().is_err());
+        let mut failing = PointReader(BufReader::new((&row[..]).chain(Failing)));
+        assert!(failing.next().unwrap().is_some() && failing.next().is_err());
+    }
+
+    struct Failing;
+
+    impl Read for Failing {
+        fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
+            Err(io::Error::other("the disk"))
+        }
     }
 }

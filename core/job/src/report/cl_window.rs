@@ -5,6 +5,7 @@ use std::io::Read;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
 use post_motion::path::{arc_chords, piece_ends};
 use post_readback::course::cl::{ClCourse, ClSettings};
 use post_readback::course::{Course, CourseItem, CoursePiece, Curve};
@@ -40,6 +41,8 @@ pub struct ClWindow {
     next: Option<CoursePiece>,
     segments: Segments,
     faults: u32,
+    /// Why its file could not be read to its end.
+    unread: Option<Box<Diagnostic>>,
     ended: bool,
 }
 
@@ -75,6 +78,7 @@ impl ClWindow {
             next: None,
             segments: Segments::default(),
             faults: 0,
+            unread: None,
             ended: false,
         })
     }
@@ -98,6 +102,10 @@ impl ClWindow {
                 }
                 Ok(Some(_)) => {}
                 Ok(None) => self.ended = true,
+                Err(fault) if fault.code == "read" => {
+                    self.unread = Some(fault);
+                    self.ended = true;
+                }
                 Err(_) => {
                     self.faults += 1;
                     self.ended = self.faults > MOST_FAULTS;
@@ -139,7 +147,7 @@ impl ClWindow {
     /// Reads the rest; the table goes to `parts`, told against the ends of these blocks.
     ///
     /// # Errors
-    /// It could not be kept.
+    /// The file could not be read, or the table not be kept.
     pub fn finish(
         mut self,
         machine: &Machine,
@@ -150,6 +158,9 @@ impl ClWindow {
             self.forget(u64::MAX);
             let line = self.next.as_ref().map_or(0, |piece| piece.line);
             self.advance(line);
+        }
+        if let Some(fault) = self.unread {
+            return Err(fault.into());
         }
         cl_points::pack(machine, self.points, blocks, parts)
     }

@@ -1,11 +1,12 @@
 //! Several texts take their names: all of them, or none.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
 use tempfile::TempPath;
 
+use super::abandoned;
 use super::file_id::{FileId, folder};
 use super::temporary::{Temporary, former, live};
 
@@ -23,8 +24,16 @@ pub struct NamingFault {
 /// A text that has its name.
 struct NamedFile {
     target: PathBuf,
-    /// The file that stood there before, under a name of its own that is deleted at the end.
-    old: Option<TempPath>,
+    /// The file that stood there before.
+    old: Option<FormerFile>,
+}
+
+/// A file that stood at a target before.
+struct FormerFile {
+    /// A name of its own that is deleted at the end.
+    path: TempPath,
+    /// As long as it is held no other run deletes that name.
+    _held: Option<File>,
 }
 
 /// Gives all texts their names in turn. If one of them cannot have it, what the others replaced is put back. A signal
@@ -63,10 +72,11 @@ fn refuse_named(named: &[NamedFile], target: &Path) -> io::Result<()> {
 }
 
 /// Gives the file at `target` a second name beside it, so that it outlasts being replaced. None if there is none.
-fn second_name(target: &Path) -> io::Result<Option<TempPath>> {
+fn second_name(target: &Path) -> io::Result<Option<FormerFile>> {
     if !target.exists() {
         return Ok(None);
     }
+    let held = abandoned::held(target);
     let second = former().make_in(folder(target), |path| {
         fs::hard_link(target, path).or_else(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => Err(error),
@@ -74,7 +84,7 @@ fn second_name(target: &Path) -> io::Result<Option<TempPath>> {
             _ => fs::copy(target, path).map(drop),
         })
     });
-    second.map(|file| Some(file.into_temp_path()))
+    second.map(|file| Some(FormerFile { path: file.into_temp_path(), _held: held }))
 }
 
 /// Puts back what was replaced, the last first; what cannot be put back.
@@ -88,7 +98,7 @@ fn put_back(named: Vec<NamedFile>) -> Vec<(usize, Option<PathBuf>)> {
                 }
             }
             Some(old) => {
-                if let Err(fault) = old.persist(&target) {
+                if let Err(fault) = old.path.persist(&target) {
                     // Deleted with its path, the user's file would be lost.
                     let path = fault.path.to_path_buf();
                     std::mem::forget(fault.path);

@@ -30,6 +30,9 @@ pub fn live() -> LivePaths {
 pub(super) const PREFIX: &str = ".post-";
 pub(super) const SUFFIX: &str = ".tmp";
 
+/// End of the names that former files have beside those that replace them.
+pub(super) const FORMER: &str = ".old";
+
 fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
@@ -39,7 +42,7 @@ fn builder() -> Builder<'static, 'static> {
 /// Names beside a file that is being replaced: what has one is the user's, and is kept whatever becomes of the run.
 pub fn former() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
-    builder.prefix(PREFIX).suffix(".old");
+    builder.prefix(PREFIX).suffix(FORMER);
     builder
 }
 

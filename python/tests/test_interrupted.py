@@ -112,7 +112,6 @@ def test_a_kill_at_any_call_leaves_each_text_whole_and_no_temporary_file_to_the_
     print(f"{len(chosen)} moments; torn as {sorted(mixed)}; {kept} former files kept")
 
 
-@pytest.mark.xfail(strict=True, reason="the summary does not say of which program it is")
 def test_a_pair_that_is_torn_tells_that_it_is_none(folder: Path) -> None:
     first = run(folder, "part.cls", "-m", MACHINE, "-o", "part.nc", "--summary", "part.json", "-q")
     assert first.returncode == 0, first.stderr

@@ -80,6 +80,7 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
         "blocks",
         "nc_lines",
         "points_added",
+        "program",
         "model_asked",
         "model_overruled",
         "tip_deviation_mm",
@@ -100,6 +101,9 @@ fn check_summary(summary: &Value, program: &str, machine: &str) {
     ] {
         assert!(keys.contains(&key), "{key} is not among {keys:?}");
     }
+    let told = &summary["program"];
+    assert_eq!((&told["name"], &told["bytes"]), (&"p.nc".into(), &program.len().into()));
+    assert_eq!(told["hash"], blake3::hash(program.as_bytes()).to_hex().as_str());
     let count = |key: &str| summary[key].as_u64().unwrap();
     let number = |key: &str| summary[key].as_f64().unwrap();
     let source = fs::read_to_string(root().join(BLADE)).unwrap();

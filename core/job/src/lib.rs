@@ -39,6 +39,7 @@ mod plugin_folders;
 mod posted;
 pub mod posting_pass;
 pub mod predict;
+pub mod program_digest;
 pub mod read;
 pub mod read_back;
 pub mod report;

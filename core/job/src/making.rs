@@ -17,7 +17,7 @@ use crate::JobMachine;
 use crate::clearance::{self, ClearanceFound, Hearer};
 use crate::compensate::{self, ServoCompensation, ShiftedPath};
 use crate::failure::Failure;
-use crate::files::{AtomicFile, ClSource, PathArg};
+use crate::files::{AtomicFile, ClSource, FileFault, PathArg};
 use crate::nc_program::{ProgramText, Reread};
 use crate::one_program::OneProgram;
 use crate::operations::ProgramLines;
@@ -26,6 +26,7 @@ use crate::plan_worth;
 use crate::plugin_finder;
 use crate::posting_pass::PostingExtras;
 use crate::predict::{self, PredictReference, Predicted, Prediction, PredictionSetup, Sample};
+use crate::program_digest::ProgramDigest;
 use crate::read_back::{self, ReadingSetup, Unwatched, VerifiedProgram};
 use crate::report::{
     self, BlockRows, ClWindow, ClearanceRows, PageTexts, PostPage, PredictedParts,
@@ -145,6 +146,8 @@ pub struct ProgramRequest<'w, 'o, 'p> {
 pub struct ProgramOutcome {
     /// What making it came to.
     pub report: PostingReport,
+    /// By what its text is known again, where something tells of it.
+    pub program: Option<ProgramDigest>,
     /// Its points were moved for the servos.
     pub moved: bool,
     /// What planning in rounds has done.
@@ -164,6 +167,7 @@ impl ProgramOutcome {
     pub fn told(&self) -> SummaryJson<'_> {
         SummaryJson {
             report: &self.report,
+            program: self.program.as_ref(),
             // One that does not hold is refused before anything is told of it.
             verification: self.verification.as_ref().map(|found| VerifySummary::of(found, &[])),
             clearance: self.clearance.as_ref().map(ClearanceFound::summary),
@@ -303,6 +307,9 @@ impl<'a> ProgramMaker<'a> {
         };
         let beside = PostingExtras { watch, observer, ..PostingExtras::default() };
         let mut outcome = self.write(ready, source, text, beside, findings)?;
+        let digest = ProgramDigest::of(&part.target, text.reread()?);
+        let unreadable = |error| FileFault::Read { name: text.name(), error };
+        outcome.program = Some(digest.map_err(unreadable)?);
         if verify {
             let program = ProgramInput { name: text.name(), text: text.reread()? };
             let held = self.read_back(part, outcome.moved, source, program)?;
@@ -373,6 +380,7 @@ impl<'a> ProgramMaker<'a> {
         };
         Ok(ProgramOutcome {
             report,
+            program: None,
             moved,
             plan_rounds,
             compensation,

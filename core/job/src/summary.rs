@@ -15,6 +15,7 @@ use crate::clearance::ClearanceSummary;
 use crate::files::PathArg;
 use crate::operations::LONGEST_LIST;
 use crate::predict::Prediction;
+use crate::program_digest::ProgramDigest;
 use crate::text::{at_most, clock, number};
 use crate::text_table::NamedValues;
 use crate::verify::VerifySummary;
@@ -26,6 +27,9 @@ pub struct SummaryJson<'a> {
     #[serde(flatten)]
     /// What making the program came to.
     pub report: &'a PostingReport,
+    /// By what the program is known again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub program: Option<&'a ProgramDigest>,
     /// What reading the program back has found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub verification: Option<VerifySummary<'a>>,
@@ -58,6 +62,10 @@ pub fn text(found: &SummaryJson<'_>, input: &str, target: &PathArg) -> String {
 /// The same for the report: without folders, which are others elsewhere.
 pub fn facts(found: &SummaryJson<'_>) -> Vec<[String; 2]> {
     let mut told = NamedValues::default();
+    let digest = found.program.map(|program| {
+        format!("{}, BLAKE3 {}", counted(program.bytes, "byte", "bytes"), program.hash)
+    });
+    told.row_if("program", digest);
     rows(&mut told, found, |plugin| match &plugin.hash {
         Some(hash) => hash.clone(),
         None => "built in".to_owned(),

@@ -162,27 +162,3 @@ fn walk(
         };
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_disk_that_fails_is_no_end() {
-        let row = [0; 40];
-        let mut whole = PointReader(BufReader::new(&row[..]));
-        assert!(whole.next().unwrap().is_some() && whole.next().unwrap().is_none());
-        let mut torn = PointReader(BufReader::new(&row[..39]));
-        assert!(torn.next().is_err());
-        let mut failing = PointReader(BufReader::new((&row[..]).chain(Failing)));
-        assert!(failing.next().unwrap().is_some() && failing.next().is_err());
-    }
-
-    struct Failing;
-
-    impl Read for Failing {
-        fn read(&mut self, _: &mut [u8]) -> io::Result<usize> {
-            Err(io::Error::other("the disk"))
-        }
-    }
-}

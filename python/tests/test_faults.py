@@ -227,7 +227,6 @@ def test_an_input_that_cannot_be_read_is_told(name: str, folder: Path) -> None:
             assert stand(folder, verb.written) == new, (number, line, made.stderr)
 
 
-@pytest.mark.xfail(strict=True, reason="a file that is read again is opened by its name, whatever has it by then")
 def test_a_page_is_of_the_cl_file_that_the_program_is_of(folder: Path) -> None:
     """The file is replaced by another before it is read for the page: that is told, or the page is of the first one."""
     line = ("part.cls", "-m", MACHINE, "-o", "part.nc", "--report", "part.html", "-q")

@@ -350,6 +350,7 @@ impl<'a> ProgramMaker<'a> {
             let texts = PageTexts { source, name: &name, text: &mut text.reread()? };
             input.write(rows, near, heard, texts, most, file)?;
         }
+        source.refuse_written()?;
         Ok(outcome)
     }
 

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use post_machine::diagnostic::{FurtherFile, SourceFiles};
 
 use super::file_id::FileId;
+use super::seen_files::SeenFiles;
 use super::{FileFault, PathArg};
 use crate::session::Session;
 
@@ -30,6 +31,18 @@ impl ClInput {
 
     /// Opens a CL file. Nothing is written to it from here on.
     pub fn open(session: &Session, source: &PathArg) -> Result<Self, FileFault> {
+        Self::open_again(session, source, &SeenFiles::default())
+    }
+
+    /// The same of one that a job may have `seen` before.
+    ///
+    /// # Errors
+    /// It cannot be opened, or is not what it was.
+    pub fn open_again(
+        session: &Session,
+        source: &PathArg,
+        seen: &SeenFiles,
+    ) -> Result<Self, FileFault> {
         let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
             if let Some(id) = FileId::of_standard_input() {
                 session.read_files().note_id(id, "the CL file on standard input".to_owned());
@@ -46,6 +59,9 @@ impl ClInput {
         let metadata = file.metadata().map_err(fault)?;
         if metadata.is_dir() {
             return Err(FileFault::ReadFolder(named.to_owned()));
+        }
+        if metadata.is_file() {
+            seen.opened(named, path, &metadata)?;
         }
         let name = named.display().to_string();
         // A terminal is read from and written to.

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use post_machine::diagnostic::FurtherFile;
 
 use super::joined::JoinedFiles;
+use super::seen_files::SeenFiles;
 use super::temporary::Temporary;
 use super::{ClInput, FileFault, PathArg};
 use crate::failure::Failure;
@@ -17,6 +18,8 @@ use crate::settings::JobSettings;
 pub struct ClSource {
     session: Session,
     argument: PathArg,
+    /// The file as it was when it was first opened.
+    seen: SeenFiles,
     /// Several files.
     joined: Option<JoinedFiles>,
     /// What a pipe or standard input held.
@@ -78,6 +81,7 @@ impl ClSource {
         let mut source = Self {
             session: session.clone(),
             argument: argument.clone(),
+            seen: SeenFiles::default(),
             joined: None,
             copy: None,
             held: None,
@@ -86,7 +90,7 @@ impl ClSource {
         if !again {
             return Ok(source);
         }
-        let mut input = ClInput::open(session, argument)?;
+        let mut input = ClInput::open_again(session, argument, &source.seen)?;
         if input.length.is_some() {
             return Ok(source);
         }
@@ -124,6 +128,7 @@ impl ClSource {
         let source = Self {
             session: session.clone(),
             argument: PathArg::Standard,
+            seen: SeenFiles::default(),
             joined: None,
             copy: Some(copy),
             held: None,
@@ -138,6 +143,7 @@ impl ClSource {
         Self {
             session: session.clone(),
             argument: argument.clone(),
+            seen: SeenFiles::default(),
             joined: None,
             copy: None,
             held: Some(text),
@@ -162,6 +168,17 @@ impl ClSource {
         })
     }
 
+    /// All was read, as often as it takes: no file was written to meanwhile.
+    ///
+    /// # Errors
+    /// One was.
+    pub fn refuse_written(&self) -> Result<(), FileFault> {
+        match &self.joined {
+            Some(joined) => joined.refuse_written(),
+            None => self.seen.refuse_written(),
+        }
+    }
+
     /// From its start, to be read beside another reader that is not done yet.
     pub fn open_beside(&self) -> Result<ClInput, FileFault> {
         if let Some(input) = self.open_held() {
@@ -171,7 +188,7 @@ impl ClSource {
             return joined.open(&self.session);
         }
         let Some(copy) = &self.copy else {
-            return ClInput::open(&self.session, &self.argument);
+            return ClInput::open_again(&self.session, &self.argument, &self.seen);
         };
         let name = self.name.clone();
         match copy.reopen() {
@@ -191,7 +208,7 @@ impl ClSource {
             return joined.open(&self.session);
         }
         let Some(copy) = &mut self.copy else {
-            return ClInput::open(&self.session, &self.argument);
+            return ClInput::open_again(&self.session, &self.argument, &self.seen);
         };
         let name = self.name.clone();
         let again = || -> io::Result<ClInput> {

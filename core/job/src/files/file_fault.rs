@@ -21,6 +21,8 @@ pub enum FileFault {
     },
     /// A folder stands where a CL file is wanted.
     ReadFolder(PathBuf),
+    /// It is not what it was when the run first opened it.
+    Changed(PathBuf),
     /// It cannot be made, written or replaced.
     Write {
         /// The file as the user named it.
@@ -124,7 +126,7 @@ impl FileFault {
     /// The stable name for programs to read.
     fn code(&self) -> &'static str {
         match self {
-            Self::Read { .. } | Self::ReadFolder(_) => "input",
+            Self::Read { .. } | Self::ReadFolder(_) | Self::Changed(_) => "input",
             _ => "output",
         }
     }
@@ -145,6 +147,7 @@ impl FileFault {
             Self::NoWaiting { .. } => {
                 Some("the environment variable TMPDIR names another folder".to_owned())
             }
+            Self::Changed(_) => Some("run it again once the file is written".to_owned()),
             _ => None,
         }
     }
@@ -158,6 +161,9 @@ impl fmt::Display for FileFault {
             | Self::NotKept { name, error, .. } => write!(formatter, "{name}: {error}"),
             Self::ReadFolder(path) => {
                 write!(formatter, "{} is a folder, not a CL file", path.display())
+            }
+            Self::Changed(path) => {
+                write!(formatter, "{} was changed while it was read", path.display())
             }
             Self::NoFolder { path, folder } => {
                 write!(formatter, "{}: there is no folder {}", path.display(), folder.display())

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use post_grammar::text::as_remark;
 use post_machine::diagnostic::{Diagnostic, FurtherFile};
 
+use super::seen_files::SeenFiles;
 use super::{ClInput, FileFault, PathArg};
 use crate::failure::Failure;
 use crate::session::Session;
@@ -18,6 +19,8 @@ const MOST_FILES: usize = 100;
 pub struct JoinedFiles {
     arguments: Vec<PathArg>,
     further: Arc<[FurtherFile]>,
+    /// As they were when they were counted.
+    seen: SeenFiles,
 }
 
 /// What a file has at its end, and how long it is.
@@ -82,8 +85,9 @@ impl JoinedFiles {
         }
         let mut further: Vec<FurtherFile> = Vec::new();
         let mut before = 0;
+        let seen = SeenFiles::default();
         for (place, argument) in arguments.iter().enumerate() {
-            let mut input = ClInput::open(session, argument)?;
+            let mut input = ClInput::open_again(session, argument, &seen)?;
             if input.length.is_none() {
                 let message = format!(
                     "{} is no file, and several CL files are read more than once",
@@ -114,7 +118,7 @@ impl JoinedFiles {
                 });
             }
         }
-        Ok(Self { arguments, further: further.into() })
+        Ok(Self { arguments, further: further.into(), seen })
     }
 
     /// The files behind the first, and where they begin.
@@ -122,15 +126,23 @@ impl JoinedFiles {
         Arc::clone(&self.further)
     }
 
+    /// None of them was written to since.
+    ///
+    /// # Errors
+    /// One was.
+    pub fn refuse_written(&self) -> Result<(), FileFault> {
+        self.seen.refuse_written()
+    }
+
     /// From the start of the first.
     ///
     /// # Errors
-    /// One of them cannot be opened.
+    /// One of them cannot be opened, or is not what it was.
     pub fn open(&self, session: &Session) -> Result<ClInput, FileFault> {
         let mut all: Option<ClInput> = None;
         let mut further = self.further.iter();
         for argument in &self.arguments {
-            let next = ClInput::open(session, argument)?;
+            let next = ClInput::open_again(session, argument, &self.seen)?;
             let Some(before) = all.take() else {
                 all = Some(next);
                 continue;

@@ -23,6 +23,7 @@ mod read_files;
 mod rights;
 mod scale;
 mod scratch;
+mod seen_files;
 pub mod standard;
 pub mod svg;
 pub mod table_cells;

@@ -158,6 +158,7 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
         let told = VerifyPage { session, machine, held, clearance, names, tolerances, threads };
         told.write(rows, near, &mut source, &program, request.report.most(), page)?;
     }
+    source.refuse_written()?;
     let texts = texts.all();
     let printed = texts.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, texts)?;

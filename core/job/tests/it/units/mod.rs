@@ -2,6 +2,7 @@
 //! that stand in them.
 #![allow(dead_code, reason = "tests do not use all of a file")]
 
+mod cl_source;
 mod cl_window;
 mod gauges;
 mod grid;

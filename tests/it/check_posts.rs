@@ -58,7 +58,9 @@ fn variants() -> Vec<(String, Vec<String>)> {
         changes.push(
             ["tool.axis=[0.02, 0, 1]", "tool.length_axis=\"none\""].map(str::to_owned).into(),
         );
-        let axes = file.get("axis").and_then(toml::Value::as_table);
+        // Where an edge leads the cut, its direction asks for more positions of an index axis than the tool upright.
+        let led = file.get("tool").and_then(|tool| tool.get("edge")).is_some();
+        let axes = file.get("axis").and_then(toml::Value::as_table).filter(|_| !led);
         for (axis, table) in axes.into_iter().flatten() {
             if table.get("rotary").is_none() || table.get("indexed").is_some() {
                 continue;

@@ -114,7 +114,7 @@ pub fn predict(
 ) -> Result<Predicted, Failure> {
     let spoken = nc_program::spoken(asked.finder, asked.machine)?;
     let mut tools = Vec::new();
-    // The file was read once before: what is wrong with it is known.
+    // Nothing wrong was found when it was read before: what is found now is a disk that fails.
     let mut faults = Vec::new();
     let path = match against {
         PredictReference::Nothing => None,
@@ -149,5 +149,9 @@ pub fn predict(
         Ok::<(), Failure>(())
     })?;
     progress.finish();
-    stream.finish(trajectory, watch)
+    let predicted = stream.finish(trajectory, watch)?;
+    match faults.is_empty() {
+        true => Ok(predicted),
+        false => Err(faults.into()),
+    }
 }

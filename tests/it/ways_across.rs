@@ -117,6 +117,8 @@ fn walled(wall: [[f64; 3]; 2]) -> TempDir {
 name = \"with a wall\"
 [fixture.plate]
 block = [[-170, -60, 0], [170, 60, 20]]
+[stock]
+block = [[-150, -20, 0], [150, 20, 30]]
 [fixture.wall]
 block = {wall:?}
 on = \"b\"
@@ -206,4 +208,19 @@ fn walls_anywhere_are_kept_clear_of_or_refused() {
         past += summary["ways_across"]["past"].as_u64().unwrap();
     }
     assert!(past > 0);
+}
+
+/// Ways past bodies would go through a part that nobody has drawn.
+#[test]
+fn without_a_stock_no_way_is_shortened() {
+    let folder = tempfile::tempdir().unwrap();
+    let cl = root().join("tests/samples/facets.apt");
+    let cl = cl.to_str().unwrap();
+    for option in ["clearance.low_retracts=true", "clearance.link=true"] {
+        let words = ["-m", "dmu50", cl, "--tool-length", "100", "--set", option, "-o", "part.nc"];
+        let run = post_in(folder.path(), &words);
+        assert_eq!(run.code, 1, "{}", run.err);
+        assert_contains(&run.err, &["no [stock] is drawn"]);
+        assert!(!folder.path().join("part.nc").exists());
+    }
 }

@@ -89,6 +89,14 @@ pub struct PostingPass<'a> {
     pub keeps_clear: bool,
 }
 
+/// Ways between passes go past bodies: a part that nobody has drawn would be in no way's way.
+fn no_stock() -> Diagnostic {
+    let message = "ways between passes are to be shortened ([clearance] low_retracts, link), and no [stock] is drawn: they would go through the part";
+    Diagnostic::error("clearance-body", message).help(
+        "[stock] block, cylinder or file: the part as it is clamped, in the frame of the part",
+    )
+}
+
 impl PostingPass<'_> {
     /// Posts `input` and writes the program to `sink`: its report, if all is good, and every finding.
     ///
@@ -110,7 +118,11 @@ impl PostingPass<'_> {
             true => Some(ChoiceBodies::of(machine, &mut told)?),
             false => None,
         };
-        let mut between = match machine.clearance.shortens_ways() {
+        let shortens = machine.clearance.shortens_ways();
+        if shortens && machine.stock.is_none() {
+            return Err(no_stock().into());
+        }
+        let mut between = match shortens {
             true => Some(ChoiceBodies::of(machine, &mut Vec::new())?.coarse()),
             false => None,
         };

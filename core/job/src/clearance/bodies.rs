@@ -195,7 +195,12 @@ pub(super) fn closed_mesh(
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Vec<[Vector3<f64>; 3]>> {
     let (triangles, shape) = read_mesh(path, (place, name), &|corner| corner, findings)?;
-    let MeshFaults { open, inverted, .. } = shape.faults();
+    let MeshFaults { open, inverted, empty, .. } = shape.faults();
+    if empty > 0 {
+        let why = format!("{empty} of its parts enclose no volume: nothing is inside of them");
+        findings.push(unusable(name, &why, place));
+        return None;
+    }
     if open + inverted > 0 {
         let why = format!(
             "what is inside is known of closed surfaces alone, and {open} edges of its mesh are not those of two triangles, at {inverted} two do not agree what is outside"

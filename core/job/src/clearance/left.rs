@@ -369,7 +369,8 @@ impl CutStock {
         let standstill = &against.motion.state.standstill;
         let spins = standstill.spindle.or(standstill.change).is_none()
             && matches!(*spindle, SpindleState::Clockwise(speed) | SpindleState::CounterClockwise(speed) if speed > 0.0);
-        let cuts = !against.rapid && spins;
+        // Nothing says which tools are left-handed: one that turns the other way takes nothing away for certain.
+        let cuts = !against.rapid && spins && matches!(spindle, SpindleState::Clockwise(_));
         let mut clear = true;
         for way in against.ways {
             clear &= self.way(&mut tool, against, way, cuts);

@@ -165,10 +165,10 @@ def test_rounding_mode(mode: str, folder: Path, tmp_path: Path) -> None:
 
 @EACH
 def test_debug_and_release(verb: Verb, folder: Path) -> None:
-    """The other build of the command: POST_OTHER_COMMAND, or that of `cargo build --release` beside this one."""
-    there = os.environ.get("POST_OTHER_COMMAND", str(Path(COMMAND).parents[1] / "release/post"))
-    if not Path(there).is_file():
-        pytest.skip(f"there is no other build at {there}")
+    """The other build of the same sources, which POST_OTHER_COMMAND names: that beside this one may be of another day."""
+    there = os.environ.get("POST_OTHER_COMMAND", "")
+    if not there:
+        pytest.skip("no other build is named")
     first = made(folder, verb)
     rows = folder / "rows.csv"
     own = rows.read_text() if verb.name == "batch" else ""

@@ -134,6 +134,8 @@ pub struct ProgramRequest<'w, 'o, 'p> {
     pub clearance: bool,
     /// What it does is predicted.
     pub predict: bool,
+    /// A summary tells of it, and names it by its length and hash; a page does so always.
+    pub summary: bool,
     /// Sees its plan.
     pub watch: Option<&'w mut dyn PlanWatch>,
     /// Sees its blocks, if no page does.
@@ -294,7 +296,7 @@ impl<'a> ProgramMaker<'a> {
         wanted: ProgramRequest<'_, '_, '_>,
         findings: &mut Vec<Diagnostic>,
     ) -> Result<ProgramOutcome, Failure> {
-        let ProgramRequest { verify, clearance, predict, watch, observer, page } = wanted;
+        let ProgramRequest { verify, clearance, predict, summary, watch, observer, page } = wanted;
         let clearance = clearance || part.machine.clearance.shortens_ways();
         let mut rows = match &page {
             Some(_) => Some(self.rows(part, source, predict)?),
@@ -307,9 +309,11 @@ impl<'a> ProgramMaker<'a> {
         };
         let beside = PostingExtras { watch, observer, ..PostingExtras::default() };
         let mut outcome = self.write(ready, source, text, beside, findings)?;
-        let digest = ProgramDigest::of(&part.target, text.reread()?);
-        let unreadable = |error| FileFault::Read { name: text.name(), error };
-        outcome.program = Some(digest.map_err(unreadable)?);
+        if summary || page.is_some() {
+            let digest = ProgramDigest::of(&part.target, text.reread()?);
+            let unreadable = |error| FileFault::Read { name: text.name(), error };
+            outcome.program = Some(digest.map_err(unreadable)?);
+        }
         if verify {
             let program = ProgramInput { name: text.name(), text: text.reread()? };
             let held = self.read_back(part, outcome.moved, source, program)?;

@@ -122,9 +122,10 @@ impl PostingPass<'_> {
         if shortens && machine.stock.is_none() {
             return Err(no_stock().into());
         }
-        let mut between = match shortens {
-            true => Some(ChoiceBodies::of(machine, &mut Vec::new())?.coarse()),
-            false => None,
+        let mut between = match (shortens, &bodies) {
+            (true, Some(bodies)) => Some(bodies.coarse()),
+            (true, None) => Some(ChoiceBodies::of(machine, &mut Vec::new())?.coarse()),
+            (false, _) => None,
         };
         // Blocks are shown with the lines that they end on: whoever looks on waits for the text of each batch.
         let beside_text = threads > NonZeroUsize::MIN && beside.observer.is_none();

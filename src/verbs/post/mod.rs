@@ -216,6 +216,7 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
                 verify: outputs.verify,
                 clearance: outputs.clearance,
                 predict: outputs.predict.is_some(),
+                summary: outputs.summary.is_some(),
                 watch,
                 observer: None,
                 page,

@@ -66,13 +66,17 @@ impl<'a> ChoiceBodies<'a> {
             return Err(findings.into());
         }
         told.append(&mut findings);
+        Ok(Self::with(machine, fixed, None))
+    }
+
+    fn with(machine: &'a Machine, fixed: Vec<Body>, within: Option<f64>) -> Self {
         let (tool, tracks, asked) = (Vec::new(), Vec::new(), VecDeque::new());
-        Ok(Self { machine, fixed, tool, tracks, asked, count: 0, within: None })
+        Self { machine, fixed, tool, tracks, asked, count: 0, within }
     }
 
     /// The same for ways that may as well be others: where bodies come by closely nothing is looked at for long.
-    pub fn coarse(self) -> Self {
-        Self { within: Some(COARSE), ..self }
+    pub fn coarse(&self) -> Self {
+        Self::with(self.machine, self.fixed.clone(), Some(COARSE))
     }
 
     /// The track that stands on `joints`; else another begins, in the place of the one that was asked longest ago.

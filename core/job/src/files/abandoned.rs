@@ -8,12 +8,17 @@ use std::path::Path;
 
 use tempfile::NamedTempFile;
 
+/// Begin and end of the names of temporary files.
+pub const PREFIX: &str = ".post-";
+pub const SUFFIX: &str = ".tmp";
+
+/// End of the names that former files have beside those that replace them.
+pub const FORMER: &str = ".old";
+
 /// Deletes temporary files in `folder` that no run holds, and second names that no run holds of files that have another.
 /// What cannot be deleted stays, and nobody is told: it is in nobody's way.
 #[cfg(unix)]
 pub fn delete(folder: &Path) {
-    use super::temporary::{FORMER, PREFIX, SUFFIX};
-
     let Ok(entries) = std::fs::read_dir(folder) else {
         return;
     };

@@ -10,11 +10,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::abandoned;
+use super::abandoned::{self, FORMER, PREFIX, SUFFIX};
 
 /// Paths of the temporary files that exist. A file is made, renamed and deleted with this locked, so that a signal finds
 /// every one, and never one that has its name already.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// Folders in which this run has deleted what killed runs left: once, however many files it makes there.
+static TIDIED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// The paths, locked: a signal waits until it is let go.
 pub type LivePaths = MutexGuard<'static, BTreeSet<PathBuf>>;
@@ -24,14 +27,6 @@ pub fn live() -> LivePaths {
     // A set of paths is whole whatever a thread died of.
     LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
-
-/// Begin and end of the names of temporary files: one that a killed run has left is nobody's, and the next run in its
-/// folder deletes it.
-pub(super) const PREFIX: &str = ".post-";
-pub(super) const SUFFIX: &str = ".tmp";
-
-/// End of the names that former files have beside those that replace them.
-pub(super) const FORMER: &str = ".old";
 
 fn builder() -> Builder<'static, 'static> {
     let mut builder = Builder::new();
@@ -72,7 +67,9 @@ impl Temporary {
 
     fn new(builder: &Builder<'_, '_>, folder: &Path) -> io::Result<Self> {
         let mut live = live();
-        abandoned::delete(folder);
+        if TIDIED.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
+            abandoned::delete(folder);
+        }
         let file = abandoned::claimed(|| builder.tempfile_in(folder))?;
         live.insert(file.path().to_owned());
         Ok(Self { file: Some(file) })

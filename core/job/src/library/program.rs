@@ -238,7 +238,8 @@ impl MadeProgram {
             let mut columns = keep_blocks.then(|| BlockArrays::new(&part.machine));
             let observer = columns.as_mut().map(|columns| columns as &mut dyn Observer);
             let Request { verify, clearance, .. } = request;
-            let wanted = ProgramRequest { verify, clearance, observer, ..Default::default() };
+            let wanted =
+                ProgramRequest { verify, clearance, observer, summary: true, ..Default::default() };
             let mut text = text(&part);
             let mut findings = Vec::new();
             let ready = maker.prepare(&part, &mut source, false)?;

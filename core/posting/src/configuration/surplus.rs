@@ -307,12 +307,12 @@ impl Trellis {
         let begins = last.kind != ArrivalKind::Cut;
         let (from_pose, target) = (pose(&last.motion), &pose(motion));
         let solver = placer.solver();
+        let mut next: Vec<(Joints, u8)> = Vec::new();
         for index in before {
             let state = self.states[index];
             if !state.cost.is_way() {
                 continue;
             }
-            let mut next: Vec<(Joints, u8)> = Vec::new();
             let way = state.branch & (ALONG | HEADING);
             if begins || way == ALONG {
                 let goes = self.axes.along_next(solver, target, &state.joints);
@@ -326,7 +326,7 @@ impl Trellis {
                 let others = self.axes.surplus_next(solver, target, &state.joints);
                 next.extend(others.into_iter().map(|joints| (joints, way)));
             }
-            for (mut joints, branch) in next {
+            for (mut joints, branch) in next.drain(..) {
                 if self.axes.stand_still(&state.joints, &mut joints)
                     && (self.axes.sure(solver, &state.joints, &joints)
                         || judge.passes(

@@ -26,6 +26,12 @@ fn volume(
     Matrix3::from_columns(&columns).determinant().abs()
 }
 
+/// Its two free axes are: no tool axis follows from them.
+fn parallel(machine: &Random) -> bool {
+    let direction = |axis| machine.reference.direction(&machine.held, axis);
+    matches!(*machine.free.as_slice(), [a, b] if direction(a).cross(&direction(b)).norm() < 0.05)
+}
+
 /// A machine with four linear axes and up to two rotary ones, and of the linear ones two: the quill, and the axis
 /// that it runs beside.
 fn four(rng: &mut Rng, round: usize) -> (Random, usize, usize) {
@@ -34,14 +40,7 @@ fn four(rng: &mut Rng, round: usize) -> (Random, usize, usize) {
     kinds.extend(vec![Kind::Held; usize::from(round.is_multiple_of(7))]);
     loop {
         let machine = Random::of(rng, &kinds);
-        if let [a, b] = *machine.free.as_slice()
-            && machine
-                .reference
-                .direction(&machine.held, a)
-                .cross(&machine.reference.direction(&machine.held, b))
-                .norm()
-                < 0.05
-        {
+        if parallel(&machine) {
             continue;
         }
         let linear = machine.reference.linear();
@@ -200,14 +199,7 @@ fn two_quills_in_reserve_take_over_together() {
         kinds.extend(vec![Kind::Free; round % 3]);
         let mut machine = Random::of(&mut rng, &kinds);
         let linear = machine.reference.linear();
-        if let [a, b] = *machine.free.as_slice()
-            && machine
-                .reference
-                .direction(&machine.held, a)
-                .cross(&machine.reference.direction(&machine.held, b))
-                .norm()
-                < 0.05
-        {
+        if parallel(&machine) {
             continue;
         }
         // Each quill goes along its axis but for a lean.

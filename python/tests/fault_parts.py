@@ -117,6 +117,19 @@ def stand(folder: Path, names: tuple[str, ...]) -> Stand:
     return {name: one(folder / name) for name in names}
 
 
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with what the verbs read."""
+    return prepared(tmp_path / "work")
+
+
+def news(verb: Verb, folder: Path) -> Stand:
+    """What the verb writes where nothing is in its way."""
+    made = run(folder, *verb.arguments)
+    assert made.returncode == 0, made.stderr
+    return stand(folder, verb.written)
+
+
 def tell_old(folder: Path, names: tuple[str, ...]) -> Stand:
     """Puts files of another run at the names."""
     for name in names:

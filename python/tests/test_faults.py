@@ -17,22 +17,27 @@ from pathlib import Path
 import pytest
 
 from conftest import COMMAND
-from fault_parts import MACHINE, VERBS, Stand, Verb, left, often, places, prepared, run, stand, tell_old, tool, traced
+from fault_parts import (
+    MACHINE,
+    VERBS,
+    Stand,
+    Verb,
+    folder,
+    left,
+    news,
+    often,
+    places,
+    prepared,
+    run,
+    stand,
+    tell_old,
+    tool,
+    traced,
+)
+
+__all__ = ["folder"]  # a fixture
 
 BY_NAME = {verb.name: verb for verb in VERBS}
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder with what the verbs read."""
-    return prepared(tmp_path / "work")
-
-
-def news(verb: Verb, folder: Path) -> Stand:
-    """What the verb writes where nothing is in its way."""
-    made = run(folder, *verb.arguments)
-    assert made.returncode == 0, made.stderr
-    return stand(folder, verb.written)
 
 
 def judged(verb: Verb, folder: Path, old: Stand, new: Stand, made: "subprocess.CompletedProcess[str]") -> str:

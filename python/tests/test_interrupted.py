@@ -16,32 +16,22 @@ from fault_parts import (
     VERBS,
     Stand,
     Verb,
+    folder,
     left,
+    news,
     often,
     places,
     preloaded,
-    prepared,
     run,
     stand,
     tell_old,
     traced,
 )
 
+__all__ = ["folder"]  # a fixture
+
 BY_NAME = {verb.name: verb for verb in VERBS}
 PAIR = ("part.nc", "part.json", "part.html")
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder with what the verbs read."""
-    return prepared(tmp_path / "work")
-
-
-def known(verb: Verb, folder: Path) -> Stand:
-    """What the verb writes."""
-    made = run(folder, *verb.arguments)
-    assert made.returncode == 0, made.stderr
-    return stand(folder, verb.written)
 
 
 # Calls at which a run comes to or goes from the disk.
@@ -54,7 +44,7 @@ def test_a_signal_at_any_call_leaves_old_or_new(name: str, sent: str, folder: Pa
     if (name, sent) not in (("post", "SIGTERM"), ("predict", "SIGHUP")) and not os.environ.get("POST_ROUNDS"):
         pytest.skip("in long runs alone")
     verb = BY_NAME[name]
-    new = known(verb, folder)
+    new = news(verb, folder)
     tell_old(folder, verb.written)
     _, calls = traced(folder, verb, ",".join(MOMENTS))
     moments = [(call, number) for call in MOMENTS for number, _ in places(calls, call)]
@@ -80,7 +70,7 @@ def test_a_signal_at_any_call_leaves_old_or_new(name: str, sent: str, folder: Pa
 
 def test_a_kill_at_any_call_leaves_each_text_whole_and_no_temporary_file_to_the_next_run(folder: Path) -> None:
     verb = BY_NAME["post"]
-    new = known(verb, folder)
+    new = news(verb, folder)
     tell_old(folder, verb.written)
     _, calls = traced(folder, verb, ",".join(MOMENTS))
     moments = [(call, number) for call in MOMENTS for number, _ in places(calls, call)]
@@ -104,7 +94,7 @@ def test_a_kill_at_any_call_leaves_each_text_whole_and_no_temporary_file_to_the_
         for path in olds:
             assert path.read_text().startswith("what stood at "), path
         # The next run takes the temporary files of this one away, and leaves no others.
-        assert known(verb, folder) == new
+        assert news(verb, folder) == new
         still = [name for name in left(folder) if not name.endswith(".old")]
         assert not still, (call, number, still)
         for path in olds:
@@ -329,7 +319,7 @@ int gettimeofday(struct timeval *restrict out, void *restrict zone) {
 def test_a_clock_that_jumps_changes_no_byte(verb: Verb, leaps: bool, folder: Path) -> None:
     if leaps and verb.name not in ("post", "batch") and not os.environ.get("POST_ROUNDS"):
         pytest.skip("in long runs alone")
-    new = known(verb, folder)
+    new = news(verb, folder)
     library = preloaded(folder.parent, CLOCK)
     environment = {"LD_PRELOAD": str(library), **({"LEAPS": "1"} if leaps else {})}
     for _ in range(often(1, 10)):

@@ -7,13 +7,9 @@ from pathlib import Path
 import pytest
 
 from conftest import COMMAND
-from fault_parts import VERBS, Stand, Verb, often, preloaded, prepared, run, stand, tool
+from fault_parts import VERBS, Stand, Verb, folder, often, preloaded, prepared, run, stand, tool
 
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    """A folder with what the verbs read."""
-    return prepared(tmp_path / "work")
+__all__ = ["folder"]  # a fixture
 
 
 def cleared(folder: Path, verb: Verb) -> None:

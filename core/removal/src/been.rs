@@ -195,7 +195,8 @@ impl Gone {
             let over = lean(0.0) / along;
             let beside = (aside - across * share).norm();
             let is_over = (-over..=1.0 + over).contains(&share) && beside <= lean(height);
-            is_over.then_some(height - rise * share)
+            // Beyond an end it is over that end: along a steep way what is small across it is much in height.
+            is_over.then_some(height - rise * share.clamp(0.0, 1.0))
         };
         let [one, other] = [above(ends[0])?, above(ends[1])?];
         let length = if axial { libm::fabs(rise) } else { 0.0 };

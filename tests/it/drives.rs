@@ -137,3 +137,47 @@ fn no_carriage_passes_its_largest_feed_and_none_is_held_back_for_nothing() {
     }
     assert!(slowed > 20 && free > 20, "{slowed} {free}");
 }
+
+/// Belts of a CoreXY are X + Y and X - Y: no block has one of them go faster, and none is slower for nothing.
+#[test]
+fn belts_that_axes_share_keep_their_largest_feed() {
+    const BELT: f64 = 6000.0;
+    let (rounds, mut rng) = randomised(12, 0xbe17);
+    let mut held = 0;
+    for _ in rounds {
+        let folder = tempfile::tempdir().unwrap();
+        let machine = format!(
+            "extends = \"router\"\nname = \"core\"\n[[leg]]\nname = \"L1\"\nat = \"Y\"\nfrom = [0, 0, 0]\nto = [0, 0, 0]\nbelt = [1, 1, 0]\nmax_feed = {BELT}\n[[leg]]\nname = \"L2\"\nat = \"Y\"\nfrom = [0, 0, 0]\nto = [0, 0, 0]\nbelt = [1, -1, 0]\nmax_feed = {BELT}\n"
+        );
+        let mut text = "LOADTL/1\nSPINDL/8000,RPM,CLW\nRAPID\nGOTO/0,0,60\nFEDRAT/600,MMPM\nGOTO/0,0,20\nFEDRAT/9000,MMPM\n".to_owned();
+        for _ in 0..8 {
+            let [x, y] = [0, 1].map(|_| rng.range(-100.0, 100.0));
+            text += &format!("GOTO/{x:.3},{y:.3},20\n");
+        }
+        text += "RAPID\nGOTO/0,0,60\nFINI\n";
+        let file = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+        std::fs::write(file("core.toml"), machine).unwrap();
+        std::fs::write(file("part.apt"), text).unwrap();
+        let (machine, part, program) = (file("core.toml"), file("part.apt"), file("part.nc"));
+        let run =
+            post(&["-q", "-m", &machine, "--tool-length=40", "--verify", &part, "-o", &program]);
+        assert_eq!(run.code, 0, "{}", run.err);
+        let program = std::fs::read_to_string(&program).unwrap();
+        let (mut at, mut feed): ([f64; 2], f64) = ([0.0; 2], 0.0);
+        let begins = program.lines().position(|line| line.contains("Z20")).unwrap();
+        for block in program.lines().skip(begins + 1) {
+            if block.contains("G0") || block.contains("G53") {
+                break;
+            }
+            feed = word(block, 'F').unwrap_or(feed);
+            let to = [word(block, 'X').unwrap_or(at[0]), word(block, 'Y').unwrap_or(at[1])];
+            let way = [to[0] - at[0], to[1] - at[1]];
+            let belt = (way[0].abs() + way[1].abs()) / libm::hypot(way[0], way[1]) * feed;
+            assert!(belt <= BELT * 1.0005, "{block}: {belt}");
+            assert!(belt >= BELT * 0.995 || feed > 8999.0, "{block}: {belt}");
+            held += usize::from(belt >= BELT * 0.995);
+            at = to;
+        }
+    }
+    assert!(held > 8, "{held}");
+}

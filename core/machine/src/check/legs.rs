@@ -127,6 +127,7 @@ fn places<'a>(probe: &'a Probe<'_>) -> impl Iterator<Item = Joints> + use<'a> {
 fn plus(leg: &Leg) -> String {
     match leg.drive {
         Drive::Strut => "it grows".to_owned(),
+        Drive::Belt { along } => format!("it pulls to {}", named(along.normalize())),
         Drive::Slide { along, .. } => format!("its carriage moves to {}", named(along)),
         Drive::Crank { about, .. } => {
             // From the plus side of the frame.

@@ -26,6 +26,8 @@ pub struct ProgramWords {
     pub words: Vec<OsString>,
     /// What the job file alone says: where a program is made as it says.
     pub plain: Option<PlainWords>,
+    /// It is made with those of the other channels.
+    pub channel: bool,
 }
 
 /// The words of a job file, without what the user says besides.
@@ -134,7 +136,7 @@ pub fn lines(
         let mut all = words[..1].to_vec();
         all.extend(like);
         all.extend_from_slice(&words[1..]);
-        return Ok(Some(vec![ProgramWords { words: all, plain: None }]));
+        return Ok(Some(vec![ProgramWords { words: all, plain: None, channel: false }]));
     };
     let job = job_file::read(session, &file)?;
     let words = JobWords { session, words, takes, job: &job, like };
@@ -321,7 +323,7 @@ impl JobWords<'_> {
         }
         let is_job = self.takes == Takes::All && matches!(named, JobPlace::Argument(_));
         let plain = is_job.then(|| PlainWords { words: plain, mark: self.job.mark.clone() });
-        Ok(ProgramWords { words, plain })
+        Ok(ProgramWords { words, plain, channel: is_job && self.job.channels })
     }
 
     /// What stands in place of the job file; none where it stands for the machine.

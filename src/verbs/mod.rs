@@ -250,6 +250,12 @@ pub fn run(
         let line = CommandLine::read(words).map_err(|fault| CommandFault::Usage(said(fault)))?;
         return line.run(session);
     };
+    if lines.iter().any(|line| line.channel) {
+        let each = lines.iter().map(|line| CommandLine::of_job(line).map(|line| line.post.0));
+        let each: Vec<_> = each.collect::<Result<_, _>>().map_err(CommandFault::Usage)?;
+        let each: Vec<_> = each.into_iter().flatten().collect();
+        return Ok(post::run_channels(session, &each)?);
+    }
     for line in lines {
         CommandLine::of_job(&line).map_err(CommandFault::Usage)?.run(session)?;
     }

@@ -13,6 +13,7 @@ mod browser;
 mod calibrate;
 mod ceilings;
 mod changes;
+mod channels;
 mod check;
 mod check_posts;
 mod clear_choice;

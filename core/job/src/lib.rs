@@ -7,6 +7,7 @@ mod blocks_ahead;
 pub mod calibrate;
 pub mod caller;
 pub mod cancellable_text;
+pub mod channels;
 pub mod cl_facts;
 pub mod clearance;
 mod columns;

@@ -4,7 +4,8 @@
 //! [`axis_words`] turns axis values into the words of a block and back ([`word_map`]: words that are no axis values),
 //! [`check`] derives what the machine's builder can compare, [`calibrate`] what readings of a ball say of its lines,
 //! [`dependent_limit`] holds axes to limits that depend on other axes, [`place`] says where a part can sit, and [`tilted_plane`] how
-//! a control is told a plane; [`face_mode`] what its axes do while it interpolates in polar coordinates. [`servo`] has the equations of the axes' servos. [`diagnostic`] is how every storey of the core says what is wrong.
+//! a control is told a plane; [`face_mode`] what its axes do while it interpolates in polar coordinates;
+//! [`wait_rule`] how its channels wait for one another. [`servo`] has the equations of the axes' servos. [`diagnostic`] is how every storey of the core says what is wrong.
 //! There is no input or output here, no unsafe code, no CL record and no dialect's name.
 
 pub mod along_word;
@@ -22,6 +23,7 @@ pub mod place;
 pub mod program_text;
 pub mod servo;
 pub mod tilted_plane;
+pub mod wait_rule;
 pub mod word_map;
 
 /// What tests look into; no part of the crate's face.

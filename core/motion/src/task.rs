@@ -35,6 +35,8 @@ pub enum WaitReason {
     ToolChange,
     /// The spindle.
     Spindle,
+    /// Programs of other channels: how long is not known here.
+    Channels,
     /// A word that is carried out at rest: coolant, a stop, another head.
     Word,
 }

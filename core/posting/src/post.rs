@@ -580,6 +580,8 @@ impl<'a> Post<'a> {
                 .map(|(word, count)| (word.to_owned(), count))
                 .collect(),
             plugins: Vec::new(),
+            waits: stages.timing.waits().to_vec(),
+            turns_spindle: stages.timing.turns_spindle(),
             warnings: self.findings.warnings(),
         }
     }

@@ -96,8 +96,29 @@ pub struct PostingReport {
     /// Ways between passes that go as bodies leave them, where that is asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ways_across: Option<WaysAcross>,
+    /// Where it waits for other channels.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub waits: Vec<ReportedWait>,
+    /// It turns the spindle.
+    #[serde(skip)]
+    pub turns_spindle: bool,
     /// Warnings, as sentences.
     pub warnings: Vec<String>,
+}
+
+/// A wait for other channels.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ReportedWait {
+    /// The mark of the CL file.
+    pub mark: u32,
+    /// The channels that wait, upwards; empty where nothing says which.
+    pub channels: Vec<u32>,
+    /// Line of the CL file.
+    pub line: u64,
+    /// Time before it, s, as `time_s` counts, without waits for others.
+    pub time_s: f64,
+    /// How long it waits for the others, s, likewise; none where the program was not made with theirs.
+    pub waits_s: Option<f64>,
 }
 
 /// Rapids in which an axis passes its `max_feed` if the control keeps the tip and limits the axes of the program alone.

@@ -23,6 +23,8 @@ pub enum ProgramEvent {
         /// In turns of the spindle.
         revolutions: bool,
     },
+    /// The program waits for those of other channels, at this mark of the CL file.
+    Sync(u32),
     /// `M0`.
     Stop,
     /// `M1`.

@@ -196,13 +196,14 @@ impl ProgramTasks {
                 self.subprogram.get_or_insert(line);
                 (0.0, WaitReason::Word)
             }
+            ProgramEvent::Sync(_) => (0.0, WaitReason::Channels),
             ProgramEvent::Coolant(_) | ProgramEvent::Head(_) => (0.0, WaitReason::Word),
             _ => return,
         };
         // Where it stands already, a wait that takes no time is none.
         let moved = self.pending.is_some();
         out.extend(self.pending.take());
-        if seconds > 0.0 || moved {
+        if seconds > 0.0 || moved || why == WaitReason::Channels {
             out.push(ProgramTask {
                 task: Task::Wait { line, seconds, why },
                 feed: 0.0,

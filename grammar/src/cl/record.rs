@@ -156,6 +156,8 @@ pub enum Statement {
     Stop,
     /// `OPSTOP`.
     OptionalStop,
+    /// `SYNC/mark[,own channel,other channels]`: the channels wait for one another.
+    Sync(SyncMark),
     /// `TOOL PATH/name,TOOL,tool`.
     ToolPath {
         /// The operation's name.
@@ -231,6 +233,7 @@ impl Statement {
             Self::ToolAxis(_) => "TLAXIS",
             Self::Delay(_) => "DELAY",
             Self::Stop => "STOP",
+            Self::Sync(_) => "SYNC",
             Self::OptionalStop => "OPSTOP",
             Self::ToolPath { .. } => "TOOL PATH",
             Self::EndOfPath => "END-OF-PATH",
@@ -243,6 +246,15 @@ impl Statement {
             Self::Other { word, .. } => word,
         }
     }
+}
+
+/// `SYNC/`: a mark at which channels wait for one another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SyncMark {
+    /// Number of the mark.
+    pub number: u32,
+    /// The channels that wait at it, counted from 1, the file's own first; empty where the file names none.
+    pub channels: Vec<u32>,
 }
 
 /// One item after the slash.

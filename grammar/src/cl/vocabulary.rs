@@ -14,8 +14,8 @@ use super::statements::geometry::{
     multax, nurbs, rotate, tlaxis,
 };
 use super::statements::technology::{
-    coolnt, delay, end_of_path, fedrat, fini, mode, opstop, rapid, spindl, stop, subprogram, units,
-    work_offset,
+    coolnt, delay, end_of_path, fedrat, fini, mode, opstop, rapid, spindl, stop, subprogram, sync,
+    units, work_offset,
 };
 use super::statements::tooling::{
     cutcom, cutcom_on_centre, cutter, load_tool, select_tool, tldata,
@@ -398,6 +398,7 @@ static WORDS: &[MajorWord] = &[
     used(&["SPINDL"], spindl, ["SPINDL/RPM,9000,CLW", "spindle"]),
     used(&["STOP"], stop, ["STOP", "stop"]),
     refused(&["SYN"], "gives words of the APT program other names"),
+    used(&["SYNC"], sync, ["SYNC/1,1,2", "the channels wait for one another at this mark: [wait]"]).else_refused(),
     motion(&["TERMAC"], "ends a macro"),
     motion(&["THREAD"], "cuts a thread"),
     used(&["TLAXIS"], tlaxis, ["TLAXIS/0,0,1", "tool axis of the moves that follow"]).else_refused(),

@@ -13,8 +13,9 @@ use parts::{Caller, WholeJob};
 use post_cli::arguments::flag_values::file;
 use post_cli::arguments::{Flags, JobArguments};
 use post_cli::terminal;
+use post_job::channels::{self, ChannelProgram};
 use post_job::failure::Failure;
-use post_job::files::{self, AtomicFile, ClSource, PathArg, Role};
+use post_job::files::{self, AtomicFile, ClSource, OwnFolder, PathArg, Role};
 use post_job::job_file::{self, JobMark, SavedJob};
 use post_job::making::{self, ProgramMaker, ProgramOutcome, ProgramPart, ProgramRequest};
 use post_job::old_summary::OldSummary;
@@ -28,7 +29,7 @@ use post_job::summary::{self, SummaryJson};
 use post_job::{caller, compensate, plan_rounds, plugin_finder, predict};
 use said_settings::SaidSettings;
 use setup_sheet::SheetJob;
-use shown::Places;
+use shown::{PictureFolder, Places};
 
 const SETUP_SHEET: Role =
     Role { what: "setup sheet", remedy: "name another file with --setup-sheet" };
@@ -92,6 +93,11 @@ impl PostArguments {
         format!("{:?} {making:?} {:?}{caller}", self.job.settings(), outputs.split)
     }
 
+    /// The job, with what names its job file.
+    fn marked_job(&self) -> JobSettings {
+        JobSettings { mark: self.mark.clone(), ..self.job.settings() }
+    }
+
     /// Text of the job file that is asked for.
     fn job_text(&self) -> Result<Option<String>, Failure> {
         let Some(target) = &self.save_job else {
@@ -126,6 +132,7 @@ impl PostArguments {
 }
 
 /// The files of a run, opened before the work begins: a program without its summary would be half a result.
+#[derive(Default)]
 struct OutputFiles {
     programs: Vec<AtomicFile>,
     maps: Vec<AtomicFile>,
@@ -179,9 +186,76 @@ impl OutputFiles {
     }
 }
 
+/// A run that is about to make its programs.
+struct BegunRun<'a> {
+    arguments: &'a PostArguments,
+    maker: ProgramMaker<'a>,
+    source: ClSource,
+    parts: Vec<ProgramPart>,
+    caller: Option<Caller>,
+    places: Places,
+    saved: Option<String>,
+}
+
+/// A run whose programs are made, and not yet written.
+struct MadeRun<'a> {
+    arguments: &'a PostArguments,
+    maker: &'a ProgramMaker<'a>,
+    parts: &'a [ProgramPart],
+    caller: Option<&'a Caller>,
+    saved: Option<&'a str>,
+    texts: OutputFiles,
+    outcomes: Vec<ProgramOutcome>,
+    findings: Vec<Diagnostic>,
+    folders: Vec<OwnFolder<'a>>,
+    drawn: Vec<PictureFolder>,
+}
+
 /// Posts as the arguments say.
 pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> {
-    let job = &JobSettings { mark: arguments.mark.clone(), ..arguments.job.settings() };
+    let job = arguments.marked_job();
+    let mut begun = begin(session, &job, arguments)?;
+    let made = make(session, &mut begun)?;
+    write(session, vec![made])
+}
+
+/// Posts the programs of channels that run at the same time, all of them or none.
+pub fn run_channels(session: &Session, channels: &[PostArguments]) -> Result<(), Failure> {
+    if channels.iter().any(|arguments| arguments.outputs.0.split.is_some()) {
+        let message = "the program of a channel is one, and --split makes several";
+        return Err(Diagnostic::error("split", message).into());
+    }
+    let jobs: Vec<JobSettings> = channels.iter().map(PostArguments::marked_job).collect();
+    let begun = jobs.iter().zip(channels);
+    let mut begun: Vec<BegunRun<'_>> =
+        begun.map(|(job, arguments)| begin(session, job, arguments)).collect::<Result<_, _>>()?;
+    let mut made: Vec<MadeRun<'_>> =
+        begun.iter_mut().map(|begun| make(session, begun)).collect::<Result<_, _>>()?;
+    let programs = made.iter_mut().zip(&jobs).flat_map(|(made, job)| {
+        let name = job.input.path().map(|path| path.display().to_string()).unwrap_or_default();
+        let each = made.outcomes.iter_mut().zip(made.parts);
+        each.map(move |(outcome, part)| ChannelProgram {
+            cl_file: name.clone(),
+            source: &job.machine,
+            machine: &part.machine,
+            outcome,
+        })
+    });
+    let joined = channels::join(&mut programs.collect::<Vec<_>>())?;
+    let quiet = channels.iter().any(|arguments| arguments.quiet);
+    write(session, made)?;
+    if !quiet {
+        terminal::print_beside(session, &channels::text(&joined), false);
+    }
+    Ok(())
+}
+
+/// Reads what is needed before the programs are made.
+fn begin<'a>(
+    session: &'a Session,
+    job: &'a JobSettings,
+    arguments: &'a PostArguments,
+) -> Result<BegunRun<'a>, Failure> {
     let outputs = &arguments.outputs.0;
     let saved = arguments.job_text()?;
     let (mut maker, machine) = ProgramMaker::open(session, job, &arguments.making.0)?;
@@ -196,21 +270,28 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
     if arguments.looks_ahead(&machine) {
         maker.look_ahead(&machine, &mut source, chosen.as_ref())?;
     }
-    let maker = maker;
     let whole = WholeJob { begins: source.further(), chosen };
     let (parts, caller) = the_parts(&maker, arguments, machine, whole)?;
     let places = Places::of(outputs, parts.len());
+    Ok(BegunRun { arguments, maker, source, parts, caller, places, saved })
+}
+
+/// Makes the programs, in files that nobody sees yet.
+fn make<'a>(session: &'a Session, begun: &'a mut BegunRun<'_>) -> Result<MadeRun<'a>, Failure> {
+    let BegunRun { arguments, maker, source, parts, caller, places, saved } = begun;
+    let (arguments, maker, parts, places) = (*arguments, &*maker, &*parts, &*places);
+    let outputs = &arguments.outputs.0;
     let folders = places.folders(session)?;
-    let mut texts = OutputFiles::create(session, arguments, &parts, caller.as_ref(), &places.maps)?;
+    let mut texts = OutputFiles::create(session, arguments, parts, caller.as_ref(), &places.maps)?;
     let mut outcomes = Vec::new();
     let mut findings = Vec::new();
     let mut drawn = Vec::new();
     let (mut maps, mut pages) = (texts.maps.iter_mut(), texts.pages.iter_mut());
     for (part, text) in parts.iter().zip(&mut texts.programs) {
         let draws = !folders.is_empty();
-        let ready = maker.prepare(part, &mut source, draws || !places.maps.is_empty())?;
+        let ready = maker.prepare(part, source, draws || !places.maps.is_empty())?;
         let page = pages.next().map(|page| (page, arguments.report.0.most()));
-        let (map, source) = (maps.next(), &mut source);
+        let (map, source) = (maps.next(), &mut *source);
         let (outcome, pictures) = shown::show(&part.machine, &part.target, map, draws, |watch| {
             let wanted = ProgramRequest {
                 verify: outputs.verify,
@@ -226,27 +307,52 @@ pub fn run(session: &Session, arguments: &PostArguments) -> Result<(), Failure> 
         drawn.extend(pictures);
         outcomes.push(outcome);
     }
-    write_besides(arguments, &maker, &parts, &outcomes, &mut texts)?;
-    if let (Some(caller), Some(file)) = (&caller, &mut texts.caller) {
-        file.write_bytes(caller.text(&maker)?.as_bytes())?;
+    let (caller, saved) = (caller.as_ref(), saved.as_deref());
+    Ok(MadeRun {
+        arguments,
+        maker,
+        parts,
+        caller,
+        saved,
+        texts,
+        outcomes,
+        findings,
+        folders,
+        drawn,
+    })
+}
+
+/// Writes all programs and what stands beside them, or nothing, and tells of them.
+fn write(session: &Session, mut all: Vec<MadeRun<'_>>) -> Result<(), Failure> {
+    let mut files = Vec::new();
+    for made in &mut all {
+        let MadeRun { arguments, maker, parts, outcomes, texts, .. } = made;
+        write_besides(arguments, maker, parts, outcomes, texts)?;
+        if let (Some(caller), Some(file)) = (made.caller, &mut texts.caller) {
+            file.write_bytes(caller.text(maker)?.as_bytes())?;
+        }
+        if let (Some(text), Some(file)) = (made.saved, &mut texts.job) {
+            file.write_bytes(text.as_bytes())?;
+        }
+        files.extend(std::mem::take(texts).all());
     }
-    if let (Some(text), Some(file)) = (&saved, &mut texts.job) {
-        file.write_bytes(text.as_bytes())?;
-    }
-    let mut files = texts.all();
     // Standard output is for a program or for JSON, alone there.
     let taken = files.iter().any(AtomicFile::is_standard);
-    for (folder, pictures) in folders.iter().zip(&drawn) {
+    let drawn = || all.iter().flat_map(|made| made.folders.iter().zip(&made.drawn));
+    for (folder, pictures) in drawn() {
         folder.add(pictures, &mut files)?;
     }
     AtomicFile::finish(session, files)?;
-    for (folder, pictures) in folders.iter().zip(&drawn) {
+    for (folder, pictures) in drawn() {
         folder.tidy(pictures)?;
     }
-    debug_assert!(findings.iter().all(|finding| finding.severity == Severity::Warning));
-    session.findings(&findings);
-    if !arguments.quiet {
-        print(&maker, &parts, &outcomes, taken);
+    for made in &all {
+        let MadeRun { arguments, maker, parts, outcomes, findings, .. } = made;
+        debug_assert!(findings.iter().all(|finding| finding.severity == Severity::Warning));
+        session.findings(findings);
+        if !arguments.quiet {
+            print(maker, parts, outcomes, taken);
+        }
     }
     Ok(())
 }

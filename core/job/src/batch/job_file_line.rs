@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::job_line::{JobLine, ValueText};
 use crate::failure::Failure;
-use crate::job_file::{JobFile, JobProgram, ToldSetting};
+use crate::job_file::{JobFile, JobProgram, ToldSetting, refuse_channels};
 use crate::settings::{ReadingSettings, SettingValue, SettingsGroup as _, StudySettings};
 
 impl JobLine {
@@ -14,6 +14,7 @@ impl JobLine {
     /// # Errors
     /// A program is read or made in another way than the batch does it.
     pub fn of_job_file(job: &JobFile, asked: &StudySettings) -> Result<Vec<Self>, Failure> {
+        refuse_channels(job)?;
         job.programs.iter().map(|program| Self::of_program(program, asked)).collect()
     }
 

@@ -9,12 +9,16 @@ use crate::settings::{
 const READ_BACK: [&str; 2] = ["offsets", "most_blocks"];
 
 /// Keys that stand beside the settings, each with what it means.
-pub(super) const BESIDE: [(&str, &str); 3] = [
+pub(super) const BESIDE: [(&str, &str); 4] = [
     ("machine", "The machine: a TOML file, or the name of one in a machine folder or built in."),
     ("cl", "The CL file; several, in their order, become one program."),
     (
         "program",
         "A program of its own, [[program]]: with its CL file, and keys over those above all programs.",
+    ),
+    (
+        "channel",
+        "The program of a channel of the machine, [[channel]], from 1: with its machine and CL file. All run at the same time.",
     ),
 ];
 

@@ -22,11 +22,28 @@ pub use told_setting::ToldSetting;
 
 use std::path::Path;
 
+use post_machine::diagnostic::Diagnostic;
+
+use crate::failure::Failure;
+
 /// How the name of a job file ends.
 pub const ENDING: &str = ".job.toml";
 
 /// Most programs of one job file.
 const MOST_PROGRAMS: usize = 1_000;
+
+/// Refuses to make the programs of channels one by one.
+///
+/// # Errors
+/// The job has channels.
+pub fn refuse_channels(job: &JobFile) -> Result<(), Failure> {
+    if !job.channels {
+        return Ok(());
+    }
+    let message = format!("{}: its channels are made together, and not one by one", job.name);
+    let help = "post JOB.job.toml makes them";
+    Err(Diagnostic::error("job-file", message).help(help).into())
+}
 
 /// What the programs of a job are, in the order of the file.
 #[derive(Clone, Debug)]
@@ -35,7 +52,9 @@ pub struct JobFile {
     pub name: String,
     /// What names it in the head of its programs.
     pub mark: JobMark,
-    /// Its programs, one at least.
+    /// Its programs run at the same time, one a channel of the machine.
+    pub channels: bool,
+    /// Its programs, one at least; of channels in their order from 1.
     pub programs: Vec<JobProgram>,
 }
 

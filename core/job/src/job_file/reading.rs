@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use post_grammar::text::is_unprintable;
 use post_machine::description::MOST_BYTES;
 use post_machine::diagnostic::{Diagnostic, SourcePlace, meant};
+use post_machine::wait_rule::MOST_CHANNELS;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -29,10 +30,12 @@ const MOST_FAULTS: usize = 50;
 pub fn read(session: &Session, path: &Path) -> Result<JobFile, Failure> {
     let text = text_of(session, path)?;
     let name = path.display().to_string();
-    let mut reading = JobReading { name: &name, text: &text, path, faults: Vec::new() };
+    let mut reading =
+        JobReading { name: &name, text: &text, path, channels: false, faults: Vec::new() };
     let programs = reading.programs();
+    let channels = reading.channels;
     match reading.faults.is_empty() {
-        true => Ok(JobFile { mark: JobMark::new(path, &text), name, programs }),
+        true => Ok(JobFile { mark: JobMark::new(path, &text), name, channels, programs }),
         false => Err(reading.faults.into()),
     }
 }
@@ -103,6 +106,8 @@ struct JobReading<'t> {
     name: &'t str,
     text: &'t str,
     path: &'t Path,
+    /// Its programs are those of channels.
+    channels: bool,
     faults: Vec<Diagnostic>,
 }
 
@@ -119,7 +124,15 @@ impl JobReading<'_> {
         let (mut rest, mut programs) = (DeTable::new(), None);
         for (key, value) in table {
             match key.get_ref().as_ref() {
-                "program" => programs = Some(value),
+                name @ ("program" | "channel") => {
+                    if programs.is_some() {
+                        let message = "a job has [[program]] or [[channel]] tables".to_owned();
+                        self.fault(key.span(), message, "a job file for each kind");
+                        return Vec::new();
+                    }
+                    self.channels = name == "channel";
+                    programs = Some(value);
+                }
                 _ => {
                     rest.insert(key, value);
                 }
@@ -138,13 +151,23 @@ impl JobReading<'_> {
             self.fault(programs.span(), message, "several job files take more");
             return Vec::new();
         }
+        let channels = 2..=MOST_CHANNELS as usize;
+        if self.channels && !channels.contains(&items.len()) {
+            let message =
+                format!("{} channels: from 2 to {MOST_CHANNELS} are possible", items.len());
+            self.fault(programs.span(), message, "[[program]] is a program by itself");
+            return Vec::new();
+        }
         let mut all = Vec::new();
-        for item in items.iter() {
+        for (index, item) in items.iter().enumerate() {
             let Some(table) = item.get_ref().as_table() else {
                 self.fault(item.span(), "a program is a table, [[program]]".to_owned(), "");
                 continue;
             };
-            let own = self.said(table);
+            let mut own = self.said(table);
+            if self.channels {
+                own = own.with(self.channel(index + 1, items.len(), item.span()));
+            }
             all.extend(self.program(above.with(own), Some(item.span())));
         }
         if all.is_empty() && self.faults.is_empty() {
@@ -152,6 +175,15 @@ impl JobReading<'_> {
         }
         self.refuse_twice(&all);
         all
+    }
+
+    /// What the machine is told of a channel's number among all.
+    fn channel(&self, number: usize, all: usize, span: Range<usize>) -> SaidKeys {
+        let keys = [format!("wait.channel={number}"), format!("wait.channels={all}")];
+        let value = SettingValue::List(keys.map(SettingValue::Text).to_vec());
+        let place = self.place(span);
+        let told = JobKeys::named("set").map(|about| ToldSetting { about, value, place });
+        SaidKeys { told: told.into_iter().collect(), ..SaidKeys::default() }
     }
 
     /// Two programs of one name would take each other's place.

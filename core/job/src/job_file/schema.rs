@@ -6,6 +6,9 @@ use super::JobKeys;
 use super::job_keys::BESIDE;
 use crate::settings::{About, SettingForm};
 
+/// The keys that are lists of tables.
+const TABLES: [&str; 2] = ["program", "channel"];
+
 /// The schema.
 pub fn schema() -> Value {
     let mut keys: Map<String, Value> = JobKeys::about()
@@ -16,13 +19,13 @@ pub fn schema() -> Value {
         keys.insert(name.to_owned(), json!({ "description": doc, "type": "string" }));
     }
     keys.insert("cl".to_owned(), several(&keys["cl"]));
-    keys.remove("program");
+    keys.retain(|name, _| !TABLES.contains(&name.as_str()));
     let program = json!({
         "type": "object",
         "properties": keys.clone(),
         "additionalProperties": false,
     });
-    for (name, doc) in BESIDE.iter().filter(|(name, _)| *name == "program") {
+    for (name, doc) in BESIDE.iter().filter(|(name, _)| TABLES.contains(name)) {
         let programs =
             json!({ "description": doc, "type": "array", "items": program, "minItems": 1 });
         keys.insert((*name).to_owned(), programs);

@@ -216,6 +216,7 @@ impl MadeProgram {
         let (job, _) = quietly(stop, |session| job_file::read(session, path))?;
         let programs = job.programs.iter().map(|program| {
             Self::make(stop, keep_blocks, |session| {
+                job_file::refuse_channels(&job)?;
                 session.read_files().note("the job file", path);
                 Request::of_job(session, &job, program, options, writes)
             })

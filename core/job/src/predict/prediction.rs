@@ -56,6 +56,9 @@ pub struct Times {
     pub waiting_s: f64,
     /// How long the moves at feed would take if no limit but the feed of the program held, s.
     pub cutting_at_feed_s: f64,
+    /// When it begins to wait for other channels, s, in the order of the program: these waits are counted as no time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub channel_waits_s: Vec<f64>,
     /// What limits the time, the longest first.
     pub limits: Vec<LimitTime>,
     /// By tool and operation, in the order of the program.

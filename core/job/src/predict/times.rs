@@ -3,6 +3,7 @@
 use post_machine::description::Machine;
 use post_motion::WaitReason;
 use post_motion::trajectory::{TaskTime, TimeLimit};
+use post_posting::program::limits::MOST_WAITS;
 
 use super::prediction::{LimitTime, OperationTime, Times};
 
@@ -73,6 +74,12 @@ impl TimeTally {
                 times.cutting_at_feed_s += time.asked;
             }
             TaskKind::Rapid => times.rapid_s += time.seconds,
+            TaskKind::Wait(WaitReason::Channels) => {
+                if times.channel_waits_s.len() < MOST_WAITS {
+                    times.channel_waits_s.push(time.begins);
+                }
+                return;
+            }
             TaskKind::Wait(_) => times.waiting_s += time.seconds,
         }
         if let Some(row) = times.operations.get_mut(operation) {
@@ -130,7 +137,7 @@ fn reason(why: WaitReason) -> &'static str {
         WaitReason::Dwell => "dwell",
         WaitReason::ToolChange => "tool change",
         WaitReason::Spindle => "spindle",
-        WaitReason::Word => "standstill",
+        WaitReason::Word | WaitReason::Channels => "standstill",
     }
 }
 

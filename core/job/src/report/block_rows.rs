@@ -362,6 +362,9 @@ impl Observer for BlockRows<'_> {
                 self.marks.head(row, name, number);
             }
             Command::Stop => event("stop", "stop".to_owned()),
+            Command::Sync(wait) => {
+                event("stop", format!("waits for channels at mark {}", wait.mark))
+            }
             Command::OptionalStop => event("stop", "optional stop".to_owned()),
             _ => {}
         }

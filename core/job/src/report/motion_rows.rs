@@ -443,6 +443,10 @@ impl<'m> MotionRows<'m> {
                 self.marks.event(self.came, "dwell", format!("{time} s"));
             }
             ProgramEvent::Stop => self.marks.event(self.came, "stop", "stop"),
+            ProgramEvent::Sync(mark) => {
+                let text = format!("waits for channels at mark {mark}");
+                self.marks.event(self.came, "stop", text);
+            }
             ProgramEvent::OptionalStop => self.marks.event(self.came, "stop", "optional stop"),
             ProgramEvent::Head(name) => {
                 let (machine, number) = axes::with_head(self.base, name);

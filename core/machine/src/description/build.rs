@@ -326,6 +326,7 @@ impl Builder<'_> {
         let word_map = self.word_map(&file.word, &axes, &mut limits);
         limits.extend(self.legs(&file.leg, &axes));
         let along = self.along(file, &axes);
+        let wait = self.wait(&file.wait, &axes);
         let mount = file.workpiece.mount.as_ref();
         let mount = mount.map_or_else(Vector3::zeros, |mount| self.vector(mount));
         let turn = self.checked(&file.workpiece.turn).unwrap_or(0.0).to_radians();
@@ -367,6 +368,7 @@ impl Builder<'_> {
             limits,
             word_map,
             along,
+            wait,
             mount,
             mount_said: file.workpiece.mount.is_some(),
             given_travel: Vec::new(),

@@ -22,6 +22,7 @@ use super::table::{
     Count, DeValue, EntryError, Key, KeyType, Schemas, Slip, Spanned, Value, defined, keys, words,
 };
 use super::tools::ToolsFile;
+use super::wait::WaitFile;
 use super::word::WordFile;
 
 /// Names of axes.
@@ -96,6 +97,8 @@ keys! {
         leg: Vec<Spanned<LegFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
         /// Coordinates of the control's own, in which whole operations are written.
         mode: ModeFile,
+        /// How the program of one channel waits for those of the others.
+        wait: WaitFile,
         /// STL files of the machine's bodies, for pictures and for `post clearance`; mm, machine frame, every axis at zero. An axis letter
         /// is what that axis moves, `b` the bed: they are drawn in place of what follows from the chain. `w` is what is
         /// clamped with the part, `t` a holder or head besides. A path is that from this file; an empty one takes away

@@ -38,6 +38,7 @@ mod solids;
 mod spindle;
 pub(crate) mod table;
 mod tools;
+mod wait;
 mod word;
 
 use std::collections::BTreeSet;
@@ -83,6 +84,7 @@ use crate::kinematics::{
     AxisErrors, Chain, Freedom, Joint, Joints, Leg, MAX_AXES, NoClosedForm, Second, Solver,
 };
 use crate::servo::Servo;
+use crate::wait_rule::WaitRule;
 use crate::word_map::WordMap;
 
 /// Name of the head that a machine has in polar interpolation by the control: no CL file can say it.
@@ -112,6 +114,8 @@ pub struct Machine {
     pub limits: Vec<DependentLimit>,
     /// What words make of axis values; none where each word is the value of its axis.
     pub word_map: Option<WordMap>,
+    /// How it waits for other channels; none if it has none.
+    pub wait: Option<WaitRule>,
     /// A word of no axis, which goes with the way of the tip.
     pub along: Option<AlongWord>,
     /// Where the part origin sits with all axes at zero, mm, machine frame.

@@ -109,9 +109,7 @@ impl DeclaredLines {
 /// Whether some pattern makes the line, with or without its number.
 fn some_fits(patterns: &BTreeSet<Vec<Option<String>>>, line: &str) -> bool {
     let line = plain(line);
-    let digits = line.strip_prefix('N').unwrap_or(&line);
-    let number = digits.trim_start_matches(|letter: char| letter.is_ascii_digit());
-    let unnumbered = if number.len() < digits.len() { number } else { &line };
+    let unnumbered = unnumbered(&line);
     patterns.iter().any(|texts| fits(texts, &line) || fits(texts, unnumbered))
 }
 
@@ -157,9 +155,16 @@ fn pieces<'t>(line: &'t str) -> Vec<LinePiece<'t>> {
 }
 
 /// In capitals, without blanks and signs that a block goes on.
-fn plain(text: &str) -> String {
+pub(crate) fn plain(text: &str) -> String {
     let letters = text.chars().filter(|letter| !letter.is_whitespace() && *letter != '~');
     letters.flat_map(char::to_uppercase).collect()
+}
+
+/// A [`plain`] line without its number.
+pub(crate) fn unnumbered(line: &str) -> &str {
+    let digits = line.strip_prefix('N').unwrap_or(line);
+    let number = digits.trim_start_matches(|letter: char| letter.is_ascii_digit());
+    if number.len() < digits.len() { number } else { line }
 }
 
 /// Whether the texts make the line, one behind the other.

@@ -9,6 +9,7 @@ mod facts;
 mod template;
 
 pub use declared::DeclaredLines;
+pub(crate) use declared::{plain, unnumbered};
 pub use facts::{
     CompensationFacts, Extents, Facts, OperationFacts, PlaneFacts, ProgramFacts, SpindleFacts,
     ToolFacts,

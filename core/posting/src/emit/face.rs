@@ -2,6 +2,7 @@
 
 use post_machine::axis_words::{self, AxisWords, WordValues};
 use post_machine::description::Machine;
+use post_machine::diagnostic::Diagnostic;
 use post_machine::face_mode::FaceMode;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, OverTravel, passed};
@@ -61,6 +62,15 @@ impl<'a> EmitStage<'a> {
         let letter = &self.base.axes[mode.turning].name;
         let word = words.turning as u32;
         self.writer.push(line, Event::WordLetter { word, coordinate: false, letter });
+    }
+
+    /// Refuses to wait for other channels in the mode.
+    pub(super) fn refuse_wait_on_face(&self, line: u64, mark: u32) {
+        if self.face.on {
+            let message = format!("mark {mark} of SYNC stands inside polar interpolation");
+            let help = "let the CAM system put it between operations";
+            self.findings.at(line, Diagnostic::error("wait", message).help(help));
+        }
     }
 
     /// The first position of an operation in the mode: the part is turned to zero, the tool comes to the radius of the place

@@ -384,6 +384,14 @@ impl<'a> EmitStage<'a> {
                 return self.leave(line);
             }
             Command::Dwell(seconds) => Event::Dwell { seconds: *seconds },
+            Command::Sync(wait) => {
+                self.refuse_wait_on_face(line, wait.mark);
+                // Others may rely on the spindle.
+                if self.spindle.waits.is_some() {
+                    self.wake(line);
+                }
+                Event::Word { text: &wait.line.text }
+            }
             Command::Stop => Event::Stop,
             Command::OptionalStop => Event::OptionalStop,
             Command::Home => return self.go_home(line),

@@ -405,6 +405,7 @@ fn stands_still(command: &Command) -> bool {
                 | Command::Compensate(_)
                 | Command::Literal(_)
                 | Command::Dwell(_)
+                | Command::Sync(_)
                 | Command::Stop
                 | Command::OptionalStop
         )

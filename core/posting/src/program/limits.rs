@@ -39,6 +39,9 @@ pub const MOST_WORDS: usize = 1_000;
 /// Different tools of one file, and different cutters of one that loads none.
 pub const MOST_TOOLS: usize = 1_000;
 
+/// Waits of a channel for others: they are kept to the end, for the job that joins the channels.
+pub const MOST_WAITS: usize = 10_000;
+
 /// Normalises a direction; none if its length is zero, or so large or small that its square is lost.
 #[inline]
 pub(crate) fn direction(vector: Vector3<f64>) -> Option<Vector3<f64>> {

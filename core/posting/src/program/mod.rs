@@ -14,6 +14,6 @@ pub use cycle::{CycleLeg, DrillCycle, HoleCycle};
 pub use interpret::{ClInterpreter, DefaultSpindle, ReadingOptions};
 pub use step::{
     ArcStep, Command, CycleStep, MoveFeed, PlaneStep, ProgramStep, SplineStep, StraightMove,
-    ToolChange,
+    SyncWait, ToolChange,
 };
 pub use word_census::UnknownWordPolicy;

@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 use post_machine::description::{Retract, Rewind, Smoothing};
+use post_machine::wait_rule::WaitLine;
 use post_motion::path::BSpline;
 use post_plugin::{Compensation, Coolant, Spindle, SpindleSense};
 
@@ -85,6 +86,8 @@ pub enum Command {
     Literal(String),
     /// Wait, s.
     Dwell(f64),
+    /// The program waits for those of other channels at a mark.
+    Sync(SyncWait),
     /// Stop.
     Stop,
     /// Optional stop.
@@ -117,6 +120,15 @@ impl Command {
                 | Self::Smoothing(_)
         )
     }
+}
+
+/// A wait for other channels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SyncWait {
+    /// The mark of the CL file.
+    pub mark: u32,
+    /// The line of the program, and the channels that wait.
+    pub line: WaitLine,
 }
 
 /// A move along a straight line of the part frame.

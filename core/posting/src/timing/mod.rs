@@ -13,11 +13,13 @@ use post_machine::along_word::AlongPrinter;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, LimitExcess};
 use post_machine::kinematics::Joints;
-use post_plugin::{Capabilities, Format};
+use post_plugin::{Capabilities, Format, Spindle};
 
 use crate::blocks::{BlockKind, MotionBlock};
 use crate::findings::Findings;
-use crate::program::{Command, MoveFeed};
+use crate::program::limits::MOST_WAITS;
+use crate::program::{Command, MoveFeed, SyncWait};
+use crate::report::ReportedWait;
 use crate::stream::StreamItem;
 pub(crate) use columns::TimedRun;
 use feed::{FeedWriter, WrittenFeed};
@@ -41,6 +43,8 @@ pub(crate) struct TimingStage<'a> {
     along: Option<AlongPrinter>,
     way: f64,
     statistics: Durations,
+    waits: Vec<ReportedWait>,
+    turns_spindle: bool,
     low: LowFeeds,
     findings: Findings,
 }
@@ -102,9 +106,21 @@ impl<'a> TimingStage<'a> {
             along: AlongPrinter::new(machine, format),
             way: 0.0,
             statistics: Durations::default(),
+            waits: Vec::new(),
+            turns_spindle: false,
             low: LowFeeds::default(),
             findings: findings.clone(),
         })
+    }
+
+    /// The waits for other channels so far.
+    pub(crate) fn waits(&self) -> &[ReportedWait] {
+        &self.waits
+    }
+
+    /// The spindle was turned.
+    pub(crate) fn turns_spindle(&self) -> bool {
+        self.turns_spindle
     }
 
     /// Sums so far.
@@ -150,8 +166,8 @@ impl<'a> TimingStage<'a> {
                     self.take(&mut hole.into);
                     continue;
                 }
-                StreamItem::Command { command, .. } => {
-                    self.command(command);
+                StreamItem::Command { line, command } => {
+                    self.command(*line, command);
                     continue;
                 }
                 StreamItem::Note { .. } => continue,
@@ -160,9 +176,28 @@ impl<'a> TimingStage<'a> {
         }
     }
 
-    fn command(&mut self, command: &Command) {
+    fn command(&mut self, line: u64, command: &Command) {
         match command {
             Command::Dwell(seconds) => self.statistics.other += seconds / 60.0,
+            Command::Spindle(Spindle::On { .. }) | Command::SurfaceSpeed { .. } => {
+                self.turns_spindle = true;
+            }
+            Command::Sync(SyncWait { mark, line: wait }) => {
+                if self.waits.len() == MOST_WAITS {
+                    let message = format!("more than {MOST_WAITS} waits for other channels");
+                    let help = "is this a cutter-location file?";
+                    self.findings.at(line, Diagnostic::error("wait", message).help(help));
+                    return;
+                }
+                let time = self.statistics.cutting + self.statistics.other;
+                self.waits.push(ReportedWait {
+                    mark: *mark,
+                    channels: wait.channels.clone(),
+                    line,
+                    time_s: time * 60.0,
+                    waits_s: None,
+                });
+            }
             Command::Head(name) => {
                 let Some(machine) = self.base.changed_to(name) else {
                     return;

@@ -241,6 +241,9 @@ impl ClWriter {
                 out.push_str(if revolutions { ",REV\n" } else { "\n" });
             }
             ProgramEvent::Stop => out.push_str("STOP\n"),
+            ProgramEvent::Sync(mark) => {
+                let _ = writeln!(out, "SYNC/{mark}");
+            }
             ProgramEvent::OptionalStop => out.push_str("OPSTOP\n"),
             ProgramEvent::Operation(name) => self.begins = Some(name),
             ProgramEvent::Remark(remark) | ProgramEvent::Message(remark) => {

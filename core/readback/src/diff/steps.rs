@@ -272,6 +272,7 @@ impl<P: BlockRunner> PathSteps<P> {
                     ProgramEvent::Dwell { .. }
                         | ProgramEvent::Stop
                         | ProgramEvent::OptionalStop
+                        | ProgramEvent::Sync(_)
                         | ProgramEvent::ToolChange { .. }
                 ) {
                     let at = self.splitter.at();

@@ -9,6 +9,7 @@ use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Joints, MAX_AXES, Turns};
 use post_machine::tilted_plane::TiltedPlane;
+use post_machine::wait_rule::WaitRule;
 use post_plugin::Language;
 
 use super::ReadReport;
@@ -113,6 +114,7 @@ impl ControlState {
             file: file.to_owned(),
             lexicon: lexicon.clone(),
             declared: machine.declared_lines(),
+            waits: machine.wait.as_ref().map(WaitRule::lines),
             offsets: offsets.clone(),
             machine: Arc::new(machine.clone()),
             heads,

@@ -58,7 +58,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::lexicon::Lexicon;
-use crate::{BlockEffect, MachineState, Offsets};
+use crate::{BlockEffect, MachineState, Offsets, ProgramEvent};
 use block_words::BlockWords;
 use flow::ProgramFlow;
 pub use relied::ModalGroup;
@@ -266,6 +266,15 @@ impl<R: Read + Seek> Interpreter<R> {
         let more = flow.next(&mut runner.control.variables, block);
         runner.control.report.header = flow.reader().header_lines();
         runner.control.line = block.line;
+        if let Some(lines) = runner.control.waits.as_ref().filter(|_| !matches!(more, Ok(false)))
+            && let Some(mark) = flow.text(block.line).and_then(|text| lines.mark(&text))
+        {
+            runner.control.report.blocks += 1;
+            std::mem::swap(done, &mut runner.control.done);
+            runner.control.tell(ProgramEvent::Sync(mark));
+            std::mem::swap(done, &mut runner.control.done);
+            return Ok(true);
+        }
         if !more.map_err(|finding| flow.show(runner.control.placed(*finding).boxed()))? {
             if runner.control.spline.take().is_some() {
                 let message = "a spline begins that never ends";

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use post_machine::description::Machine;
 use post_machine::kinematics::{Joints, MAX_AXES, Solver, Turns};
 use post_machine::program_text::DeclaredLines;
+use post_machine::wait_rule::WaitLines;
 use post_machine::word_map::WordMap;
 
 use super::ReadReport;
@@ -30,6 +31,8 @@ pub(super) struct ControlState {
     pub lexicon: Lexicon,
     /// The lines that the machine file has of its own.
     pub declared: DeclaredLines,
+    /// The lines at which it waits for other channels; none where the machine has none.
+    pub waits: Option<WaitLines>,
     /// What stands in the control's tables.
     pub offsets: Offsets,
     /// The machine with the head that it has now.

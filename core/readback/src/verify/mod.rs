@@ -340,9 +340,10 @@ impl<'m, C: Course> Verifier<'m, C> {
 
     fn take_event(&mut self, line: u64, event: &ProgramEvent) {
         match event {
-            ProgramEvent::Dwell { .. } | ProgramEvent::Stop | ProgramEvent::OptionalStop => {
-                self.event(line, event)
-            }
+            ProgramEvent::Dwell { .. }
+            | ProgramEvent::Stop
+            | ProgramEvent::OptionalStop
+            | ProgramEvent::Sync(_) => self.event(line, event),
             ProgramEvent::Cycle(call) => {
                 self.cycle = Some(call.kind);
                 if let Some(made) = &mut self.made {

@@ -362,6 +362,7 @@ pub(super) fn event_name(event: &ProgramEvent) -> String {
     match event {
         ProgramEvent::Stop => "a stop".to_owned(),
         ProgramEvent::OptionalStop => "an optional stop".to_owned(),
+        ProgramEvent::Sync(mark) => format!("a wait for other channels at mark {mark}"),
         ProgramEvent::Dwell { time, revolutions: true } => format!("a dwell of {time} turns"),
         ProgramEvent::Dwell { time, .. } => format!("a dwell of {time} s"),
         other => format!("{other:?}"),
@@ -390,6 +391,7 @@ pub(super) fn same_event(asked: &ProgramEvent, done: &ProgramEvent, spindle: Spi
             };
             libm::fabs(asked - time) <= DWELL + SHARE * asked
         }
+        (ProgramEvent::Sync(asked), ProgramEvent::Sync(done)) => asked == done,
         (ProgramEvent::Stop, ProgramEvent::Stop)
         | (ProgramEvent::OptionalStop, ProgramEvent::OptionalStop) => true,
         _ => false,

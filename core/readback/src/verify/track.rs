@@ -380,7 +380,10 @@ impl<C: Course> CourseTrack<C> {
                     hole.dwell = Some(event);
                 }
             }
-            ProgramEvent::Dwell { .. } | ProgramEvent::Stop | ProgramEvent::OptionalStop => {
+            ProgramEvent::Dwell { .. }
+            | ProgramEvent::Stop
+            | ProgramEvent::OptionalStop
+            | ProgramEvent::Sync(_) => {
                 self.end_hole();
                 let at = self.elements.back().map_or_else(ToolPlace::default, |last| last.to);
                 self.push(line, ElementKind::Event(event, false), [at, at], None);

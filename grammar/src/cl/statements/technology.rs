@@ -4,7 +4,8 @@ use super::Read;
 use super::items::{Items, word};
 use crate::cl::line::LineItem;
 use crate::cl::record::{
-    CoolantWord, Delay, FeedRate, FeedUnit, Sense, SpindleUnit, SpindleWord, Statement, Units,
+    CoolantWord, Delay, FeedRate, FeedUnit, Sense, SpindleUnit, SpindleWord, Statement, SyncMark,
+    Units,
 };
 
 pub(super) fn feed_unit(word: &str) -> Option<FeedUnit> {
@@ -200,6 +201,25 @@ pub(crate) fn stop(items: &mut Items<'_, '_>) -> Read<Statement> {
 
 pub(crate) fn opstop(items: &mut Items<'_, '_>) -> Read<Statement> {
     items.nothing(Statement::OptionalStop)
+}
+
+/// `SYNC/mark`, or with the channels behind it, the file's own first, as CATIA writes them: with a comma at the end.
+pub(crate) fn sync(items: &mut Items<'_, '_>) -> Read<Statement> {
+    const FORM: &str = "SYNC/mark, or SYNC/mark,own channel,other channels";
+    let number = items.whole("SYNC", FORM)?;
+    let mut channels = Vec::new();
+    while let Some(item) = items.peek() {
+        if item.text.is_empty() && items.line.items.len() == items.next + 1 {
+            break;
+        }
+        let channel = items.whole("SYNC", FORM)?;
+        if channel == 0 || channels.contains(&channel) {
+            let message = "channels are counted from 1, and each is named once";
+            return Err(items.fault(item.span(), message, FORM));
+        }
+        channels.push(channel);
+    }
+    Ok(Statement::Sync(SyncMark { number, channels }))
 }
 
 pub(crate) fn end_of_path(items: &mut Items<'_, '_>) -> Read<Statement> {

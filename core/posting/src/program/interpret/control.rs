@@ -1,11 +1,12 @@
 //! What the control does by itself: work offsets, subprograms, constant cutting speeds, smoothing.
 
-use post_grammar::{Argument, Record, SpindleUnit};
+use post_grammar::{Argument, Record, SpindleUnit, SyncMark};
 use post_machine::description::Smoothing;
 use post_machine::diagnostic::Short;
+use post_machine::wait_rule::{WaitLack, WaitRule};
 
 use super::{ClInterpreter, StepSink};
-use crate::program::{Command, ProgramStep};
+use crate::program::{Command, ProgramStep, SyncWait};
 
 /// Numbers that a file gives a work offset which may be meant as G codes: the first offset is G54.
 const CODES: std::ops::RangeInclusive<u32> = 54..=59;
@@ -58,6 +59,31 @@ impl ClInterpreter {
         self.load_told(record, emit);
         self.tip = None;
         emit(ProgramStep::Command(Command::Subprogram(number)));
+    }
+
+    /// A mark at which channels wait for one another.
+    pub(super) fn sync(&mut self, record: &Record<'_>, mark: &SyncMark, emit: &mut StepSink<'_>) {
+        if self.left_out("SYNC", record) {
+            return;
+        }
+        let inside = [
+            (self.pending.is_some(), "a curve"),
+            (self.cycles.in_force.is_some(), "a cycle"),
+            (self.compensation.on, "cutter compensation"),
+        ];
+        if let Some((_, what)) = inside.into_iter().find(|(on, _)| *on) {
+            let message = format!("mark {} of SYNC stands inside {what}", mark.number);
+            self.fault(record, "wait", message, "let the CAM system put it before or behind");
+            return;
+        }
+        let none = WaitRule::default();
+        match self.reading.wait.as_ref().unwrap_or(&none).line(mark) {
+            Ok(line) => {
+                let wait = SyncWait { mark: mark.number, line };
+                emit(ProgramStep::Command(Command::Sync(wait)));
+            }
+            Err(WaitLack { message, help }) => self.fault(record, "wait", message, help),
+        }
     }
 
     /// The user takes it upon himself that the word has no effect.

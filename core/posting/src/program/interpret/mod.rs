@@ -343,6 +343,7 @@ impl ClInterpreter {
             Statement::ToolAxis(axis) => self.tool_axis(record, *axis),
             Statement::Delay(delay) => self.delay(record, delay, emit),
             Statement::Stop => emit(ProgramStep::Command(Command::Stop)),
+            Statement::Sync(mark) => self.sync(record, mark, emit),
             Statement::OptionalStop => emit(ProgramStep::Command(Command::OptionalStop)),
             Statement::ToolPath { name, tool } => {
                 self.begin_operation(record, name, tool.as_deref(), emit);

@@ -8,6 +8,7 @@ use post_machine::description::{
 };
 
 use post_machine::diagnostic::{FurtherFile, SourceFiles};
+use post_machine::wait_rule::WaitRule;
 
 use crate::program::UnknownWordPolicy;
 
@@ -47,6 +48,8 @@ pub struct ReadingOptions {
     pub allowed: Vec<String>,
     /// Lines of the program that the machine has for words.
     pub rules: Vec<WordRule>,
+    /// How it waits for other channels.
+    pub wait: Option<WaitRule>,
     /// The tool has an edge that leads: it cuts without turning.
     pub knife: bool,
     /// What becomes of `PPRINT`.
@@ -94,6 +97,7 @@ impl ReadingOptions {
         self.compensation_on_centre = machine.control.compensation_on_centre;
         self.tool_length = machine.control.tool_length;
         self.rules.clone_from(&machine.word_rules);
+        self.wait.clone_from(&machine.wait);
         self.knife = machine.edge.is_some();
         self.print = machine.control.print;
         self.surface_speed = machine.spindle.surface_speed;

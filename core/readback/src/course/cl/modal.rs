@@ -293,6 +293,7 @@ impl ClModal {
             Statement::Delay(delay) => self.delay(record, *delay, out),
             Statement::Stop => self.tell(record, ProgramEvent::Stop, out),
             Statement::OptionalStop => self.tell(record, ProgramEvent::OptionalStop, out),
+            Statement::Sync(mark) => self.tell(record, ProgramEvent::Sync(mark.number), out),
             Statement::Head(name) => self.head(record, name, out),
             Statement::ToolPath { name, tool } => {
                 self.end_spline(record, out)?;

@@ -6,6 +6,7 @@
 
 mod loops;
 
+use std::borrow::Cow;
 use std::io::{Read, Seek};
 
 use post_grammar::ReadError;
@@ -117,12 +118,17 @@ impl<R: Read + Seek> ProgramFlow<R> {
     pub fn show(&self, mut finding: Box<Diagnostic>) -> Box<Diagnostic> {
         if let Some(place) = &mut finding.place
             && place.text.is_empty()
-            && let Some(text) = self.reader.text(self.here, place.line)
+            && let Some(text) = self.text(place.line)
         {
             let from = text.len() - text.trim_start().len();
             *place = SourcePlace::new(&self.file, place.line, &text, from..text.trim_end().len());
         }
         finding
+    }
+
+    /// The text of a line of the block in hand; none if it is no longer at hand.
+    pub fn text(&self, line: u64) -> Option<Cow<'_, str>> {
+        self.reader.text(self.here, line)
     }
 
     /// The next block that is run, without what leads elsewhere; false at the end.

@@ -71,6 +71,7 @@ mod right_jobs;
 #[cfg(unix)]
 mod rights;
 mod robots;
+mod rotary_way;
 mod settings;
 mod shells;
 #[cfg(unix)]

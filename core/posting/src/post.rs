@@ -203,7 +203,8 @@ impl<'a> Post<'a> {
             .or_else(|| refusal::retract_not_said(machine, dialect.capabilities()))
             .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()))
             .or_else(|| refusal::no_instead(machine, dialect.capabilities()))
-            .or_else(|| refusal::no_word_letter(machine, dialect.capabilities()));
+            .or_else(|| refusal::no_word_letter(machine, dialect.capabilities()))
+            .or_else(|| refusal::no_signed_way(machine, dialect.capabilities()));
         if let Some(fault) = fault {
             return Err(fault.boxed());
         }

@@ -418,6 +418,19 @@ pub(crate) fn no_word_letter(machine: &Machine, writes: Capabilities) -> Option<
     })
 }
 
+/// The sign of a rotary word is its way, and the dialect cannot say that.
+pub(crate) fn no_signed_way(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
+    let signed = |machine: &Machine| machine.axes.iter().any(|axis| axis.signed);
+    (signed(machine) && !writes.has(Capabilities::SIGN_IS_WAY)).then(|| {
+        let message = format!(
+            "way = \"sign\" of {}: the dialect {} has no words whose sign is the way",
+            machine.name, machine.control.dialect
+        );
+        Diagnostic::error("dialect", message)
+            .help("way = \"counted\", or \"shorter\" where the control takes the shorter way")
+    })
+}
+
 /// The machine file asks the control to smooth, and the dialect has no words for it.
 pub(crate) fn no_smoothing(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
     let own = machine.program.text(TextPlace::SmoothingOn).is_some();

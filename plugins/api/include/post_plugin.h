@@ -83,7 +83,8 @@ typedef struct {
     size_t choices_len;
 } PostOption;
 
-/* `rotary`: 1 for degrees, 2 if its words also lie within one turn, so that the control must take the shorter way.
+/* `rotary`: 1 for degrees, 2 if its words also lie within one turn, so that the control must take the shorter way,
+ * 3 if its word is a place within one turn and by its sign the way there, under POST_WRITES_SIGN_IS_WAY.
  * `depth`: the linear axis along the spindle at all axes zero. `carries_part`: else it carries the tool. `least`,
  * `largest`: position of the axis as the machine shows it, mm or degrees; NaN without ends. */
 typedef struct {
@@ -415,6 +416,8 @@ typedef struct {
 #define POST_WRITES_CYCLE_NO_DWELL 0x0000800000000000u
 /* WordLetter. */
 #define POST_WRITES_WORD_LETTER 0x0001000000000000u
+/* Words of rotary axes without ends as a place within one turn, whose sign is the way there. */
+#define POST_WRITES_SIGN_IS_WAY 0x0002000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

@@ -195,6 +195,8 @@ struct Modulo {
     ways: [String; 3],
     /// The value written last, whole turns counted.
     at: Option<f64>,
+    /// The way there is always said, by a sign.
+    signed: bool,
 }
 
 /// Turns below this are the shorter way, degrees; at half a turn none is.
@@ -220,21 +222,25 @@ impl Axes {
             _ => format!("{}=", word.name),
         };
         let axes = setup.words.iter().map(|word| (word, address(word)));
-        let axes = axes.map(|(word, name)| AxisState {
-            front: Front::blank(&name),
-            name,
-            group: match (word.rotary, word.depth) {
-                (true, _) => Group::Rotary,
-                (false, true) => Group::Depth,
-                (false, false) => Group::Plane,
-            },
-            decimals: if word.rotary { rotary } else { linear },
-            wrapped: word.wrapped,
-            endless: word.rotary && !word.wrapped && word.travel.is_none(),
-            modulo: None,
-            behind: "",
-            coordinate: false,
-            last: Modal::default(),
+        let axes = axes.map(|(word, name)| {
+            let mut axis = AxisState {
+                front: Front::blank(&name),
+                name,
+                group: match (word.rotary, word.depth) {
+                    (true, _) => Group::Rotary,
+                    (false, true) => Group::Depth,
+                    (false, false) => Group::Plane,
+                },
+                decimals: if word.rotary { rotary } else { linear },
+                wrapped: word.wrapped,
+                endless: word.rotary && !word.wrapped && !word.signed && word.travel.is_none(),
+                modulo: None,
+                behind: "",
+                coordinate: false,
+                last: Modal::default(),
+            };
+            axis.signs(word.signed);
+            axis
         });
         Axes { axes: axes.collect(), style, counts: Vec::new() }
     }
@@ -372,9 +378,19 @@ impl AxisState {
     /// Has the words say the place within a turn, after one of `ways`.
     fn within_turn(&mut self, ways: [&str; 3], close: &'static str) {
         let name = self.name.trim_end_matches('=');
-        self.modulo =
-            Some(Box::new(Modulo { ways: ways.map(|way| format!("{name}{way}")), at: None }));
+        let ways = ways.map(|way| format!("{name}{way}"));
+        self.modulo = Some(Box::new(Modulo { ways, at: None, signed: false }));
         self.behind = close;
+    }
+
+    /// Has the words say the place within a turn, and by a sign the way there, if they do so.
+    fn signs(&mut self, signed: bool) {
+        if signed {
+            self.within_turn(["", "", "-"], "");
+        }
+        if let Some(modulo) = self.modulo.as_mut() {
+            modulo.signed = signed;
+        }
     }
 
     #[inline(always)]
@@ -401,11 +417,15 @@ impl AxisState {
             Some(modulo) => {
                 let far = modulo.at.replace(value).map_or(0.0, |at| value - at);
                 let way = match far.abs() {
-                    ..SHORTER | 360.0.. => 0,
-                    _ if far > 0.0 => 1,
+                    ..SHORTER | 360.0.. if !modulo.signed => 0,
+                    _ if far >= 0.0 => 1,
                     _ => 2,
                 };
-                let place = within_turn(value, self.decimals);
+                let mut place = within_turn(value, self.decimals);
+                // Zero has no sign.
+                if modulo.signed && way == 2 && place == 0.0 {
+                    place = 360.0;
+                }
                 block.number_behind(None, &modulo.ways[way], place, self.decimals, style);
             }
         }

@@ -147,6 +147,8 @@ capabilities! {
     47 CYCLE_NO_DWELL;
     /// `WordLetter`.
     48 WORD_LETTER;
+    /// Words of rotary axes without ends as a place within one turn, whose sign is the way there.
+    49 SIGN_IS_WAY;
 }
 
 impl Capabilities {

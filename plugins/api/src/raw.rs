@@ -131,7 +131,7 @@ pub struct PostAxisWord {
     /// Address of the axis.
     pub name: PostText,
     /// 1 for a rotary axis (degrees), 2 for one whose words lie within one turn, so that the control must take
-    /// the shorter way, 0 for a linear one.
+    /// the shorter way, 3 for one whose word is a place within one turn and by its sign the way there, 0 for a linear one.
     pub rotary: u32,
     /// 1 for the linear axis along the spindle at all axes zero.
     pub depth: u32,

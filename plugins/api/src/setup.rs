@@ -132,6 +132,9 @@ pub struct AxisWord<'a> {
     pub rotary: bool,
     /// A rotary axis whose words lie within one turn: the control must take the shorter way.
     pub wrapped: bool,
+    /// A rotary axis without ends whose word is a place within one turn, from 0 to 360, and by its sign the way there: under
+    /// [`Capabilities::SIGN_IS_WAY`](crate::Capabilities::SIGN_IS_WAY).
+    pub signed: bool,
     /// The linear axis along the spindle at all axes zero: moved last when the tool comes near, first when it goes.
     pub depth: bool,
     /// The axis carries the part, else the tool.

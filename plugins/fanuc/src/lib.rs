@@ -22,6 +22,7 @@ impl Control for Fanuc {
         cancel: CANCEL,
         cancel_behind_length: true,
         feed_all_axes: true,
+        sign_is_way: true,
         tcp: Tcp::Length("G43.4"),
         vector: "G43.5",
         plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },

@@ -50,6 +50,8 @@ pub struct ProgramWord {
     pub rotary: bool,
     /// Its words lie within one turn.
     pub wrapped: bool,
+    /// They are places within one turn, and their sign is the way there.
+    pub signed: bool,
     /// The linear axis along the spindle.
     pub depth: bool,
     /// The axis carries the part.
@@ -96,6 +98,7 @@ impl ProgramSetup {
                 name: &word.name,
                 rotary: word.rotary,
                 wrapped: word.wrapped,
+                signed: word.signed,
                 depth: word.depth,
                 carries_part: word.carries_part,
                 travel: word.travel,

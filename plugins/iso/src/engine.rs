@@ -119,6 +119,9 @@ impl Engine {
         if !table.length.on.is_empty() && !table.length.by_itself {
             writes |= Capabilities::OFFSETS;
         }
+        if table.sign_is_way {
+            writes |= Capabilities::SIGN_IS_WAY;
+        }
         if table.feed_all_axes {
             writes |= Capabilities::FEED_ALL_AXES;
         }

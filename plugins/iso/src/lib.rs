@@ -230,6 +230,14 @@ impl<C: Control> Dialect for Iso<C> {
         if let Some(lines) = self.instead.take() {
             return self.write_instead(lines, event, out);
         }
+        if let Event::Linear { words, .. } | Event::Arc { words, .. } = *event
+            && C::TABLE.sign_is_way
+            && let Some(axis) = self.engine.motion.axes.turns_round(words)
+        {
+            return Err(format!(
+                "{axis} turns by a whole turn or more in one block, which a word whose sign is its way cannot say"
+            ));
+        }
         self.write_plain(event, out)?;
         let own = matches!(event, Event::Literal { .. } | Event::Word { .. });
         if !self.engine.style.is_plain() && !own {

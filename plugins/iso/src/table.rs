@@ -44,6 +44,8 @@ pub struct Table {
     /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
     /// along the linear ones.
     pub feed_all_axes: bool,
+    /// The sign of the word of an endless rotary axis can be its way.
+    pub sign_is_way: bool,
     /// Largest block number; past it they begin anew.
     pub largest_number: u32,
     /// Zeros at the end of axis words are left out. Option `trailing_zeros`.
@@ -453,6 +455,7 @@ impl Table {
         cancel: "",
         cancel_behind_length: false,
         feed_all_axes: false,
+        sign_is_way: false,
         largest_number: 99_999,
         trim: false,
         per_revolution: 4,

@@ -54,6 +54,7 @@ const fn word(name: &str, rotary: bool, depth: bool) -> AxisWord<'_> {
         name,
         rotary,
         wrapped: false,
+        signed: false,
         depth,
         carries_part: rotary,
         // The trunnion has ends, its table none.

@@ -22,6 +22,9 @@ pub fn check(check: &Check) -> String {
     class(&mut rows, &check.class);
     rows.row("solved", &check.solved);
     rows.row_if("leaves the part", check.leaves.as_ref());
+    for told in &check.control {
+        rows.row("control", told);
+    }
     let mut text = format!("{}\n{}\n", rows.lines(NAME), axes(&check.class.axes).lines(NAME));
     signs(&mut text, &check.signs);
     let mut rows = NamedValues::default();

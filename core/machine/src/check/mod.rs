@@ -7,6 +7,7 @@
 
 mod class;
 mod commission;
+mod control;
 mod errors;
 mod leaving;
 mod legs;
@@ -61,6 +62,9 @@ pub struct Check {
     /// How the tool leaves the part, where the machine file has another way than that of the depth axis.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub leaves: Option<String>,
+    /// What the control makes of words of the program, where the machine file says so.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub control: Vec<String>,
     /// What each axis does, a line an axis and direction.
     pub signs: Vec<Sign>,
     /// What words that are no axis values do.
@@ -135,6 +139,7 @@ impl Check {
             .to_owned(),
             not_known: machine.profile.not_known(),
             leaves: leaving::told(machine),
+            control: control::told(machine),
             signs: signs::table(&probe),
             words: words::told(&probe),
             radius: words::radius(&probe),

@@ -1,6 +1,7 @@
 //! The axes of a machine file, checked one by one and against the chain.
 
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -8,7 +9,7 @@ use post_grammar::{LinkKind, parse_chain};
 use toml::Spanned;
 
 use super::build::Builder;
-use super::file::{AxisFile, MachineFile};
+use super::file::{AxisFile, MachineFile, RotaryWay};
 use super::limits::MOST_ENTRIES;
 use super::quantity::KeyedNumber;
 use super::{Axis, Clamp, Indexed, Positions};
@@ -178,6 +179,7 @@ impl Builder<'_> {
         let indexed = self.indexed(name, spanned, zero, unit, travel);
         let clamp = self.clamp(name, spanned);
         let range = self.range(name, spanned, unit);
+        let way = self.way(name, axis, zero, range);
         Some(Axis {
             name: name.to_owned(),
             place: self.sources.place(spanned.span()),
@@ -186,7 +188,8 @@ impl Builder<'_> {
             reversed: axis.reversed,
             zero: zero * unit,
             travel,
-            range,
+            range: (way == RotaryWay::Shorter).then(|| range.unwrap_or([0.0, TAU])),
+            signed: way == RotaryWay::Sign,
             indexed,
             second: None,
             clamp,
@@ -413,6 +416,36 @@ impl Builder<'_> {
             return None;
         }
         Some([least * unit, most * unit])
+    }
+
+    /// What the control makes of the words of the axis, which shows `zero` (degrees) in the drawing and the turn `range`.
+    fn way(
+        &mut self,
+        name: &str,
+        axis: &AxisFile,
+        zero: f64,
+        range: Option<[f64; 2]>,
+    ) -> RotaryWay {
+        let usual = if axis.range.is_some() { RotaryWay::Shorter } else { RotaryWay::Counted };
+        let Some(said) = &axis.way else {
+            return usual;
+        };
+        let way = *said.get_ref();
+        let lack = if !axis.cyclic {
+            "it is for a cyclic axis"
+        } else if way == RotaryWay::Counted && range.is_some() {
+            "an axis with a range shows no whole turns"
+        } else if way == RotaryWay::Sign && range.is_some_and(|[least, _]| least != 0.0) {
+            "with a sign as the way the place goes from 0 to 360"
+        } else if way == RotaryWay::Sign && zero != 0.0 {
+            "with a sign as the way the axis shows zero in the drawing"
+        } else {
+            return way;
+        };
+        let message = format!("way of {name}: {lack}");
+        let help = "way = \"shorter\", \"sign\" or \"counted\", of a cyclic axis";
+        self.fault("machine-axis", said.span(), message, help);
+        usual
     }
 
     /// Finds the axes that quills move along with.

@@ -229,6 +229,18 @@ impl OneOrMoreLines {
     }
 }
 
+words! {
+    /// What a control makes of the word of a rotary axis that turns without end.
+    RotaryWay = Counted {
+        /// Whole turns are counted: 450 is a quarter turn beyond 360.
+        Counted "counted",
+        /// A place within one turn, to which it turns the shorter way.
+        Shorter "shorter",
+        /// A place within one turn, and its sign is the way there: -90 turns to 90, counting down.
+        Sign "sign",
+    }
+}
+
 keys! {
     /// One axis: its kind and line, how far it goes and how fast.
     AxisFile {
@@ -249,6 +261,8 @@ keys! {
         zero: Option<KeyedNumber>,
         /// The one turn over which the control shows a cyclic axis, degrees: [0, 360] or [-180, 180].
         range: Option<Spanned<[KeyedNumber; 2]>>,
+        /// What the control makes of the word of a cyclic axis; "shorter" if it has a range, "counted" if not.
+        way: Option<Spanned<RotaryWay>>,
         /// It moves off the part alone, and stands here until something moves it, mm or degrees.
         indexed: Option<KeyedNumber>,
         /// The only positions that an indexed axis can stand at, mm or degrees.

@@ -233,6 +233,8 @@ pub struct Axis {
     pub travel: Option<[f64; 2]>,
     /// The control shows a cyclic axis within these values, radians, and turns it the shorter way.
     pub range: Option<[f64; 2]>,
+    /// Its word is a place within one turn, and the sign of that the way there.
+    pub signed: bool,
     /// It moves off the part alone.
     pub indexed: Option<Indexed>,
     /// It moves along with another linear axis.

@@ -61,6 +61,10 @@ impl Builder<'_> {
                 self.fault("machine-axis-word", name.span(), message, help);
                 continue;
             };
+            if axes[place].signed {
+                let message = format!("the sign of the word of {} is its way", axes[place].name);
+                self.fault("machine-axis-word", name.span(), message, "leave its [word] out");
+            }
             if let Some(row) = self.word_row(place, &word.get_ref().is, axes) {
                 rows[place] = row;
                 self.word_travel(word.get_ref(), axes, limits);

@@ -165,7 +165,7 @@ impl EmitStage<'_> {
     /// An axis that turns back by whole turns takes its time: the program says why.
     fn tell_unwinding(&self, line: u64, joint: usize, value: f64) {
         let axis = &self.machine.axes[joint];
-        if !axis.joint.rotary || axis.range.is_some() {
+        if !axis.joint.rotary || axis.range.is_some() || axis.signed {
             return;
         }
         let (from, to) = (axis.reading(self.last[joint]), axis.reading(value));
@@ -196,7 +196,12 @@ impl EmitStage<'_> {
         for (joint, axis) in self.machine.axes.iter().enumerate() {
             let parked = self.machine.frame.park.iter().any(|(place, _)| *place == joint);
             let stands = axis.reading(self.last[joint]);
-            if !axis.joint.rotary || axis.range.is_some() || parked || libm::fabs(stands) <= TURN {
+            if !axis.joint.rotary
+                || axis.range.is_some()
+                || axis.signed
+                || parked
+                || libm::fabs(stands) <= TURN
+            {
                 continue;
             }
             self.findings.at(

@@ -531,6 +531,9 @@ impl ControlState {
         if !axis.joint.rotary {
             return value;
         }
+        if axis.signed && self.modal.shortest.is_none() {
+            return by_sign(value, last);
+        }
         let shortest = self.modal.shortest.unwrap_or(axis.range.is_some());
         if !shortest {
             return value;
@@ -561,6 +564,19 @@ pub(super) fn shorter(value: f64, last: f64) -> f64 {
     }
     let turns = libm::ceil(way / TAU - 0.5 - 1e-12);
     value - turns * TAU
+}
+
+/// The place of `value` on the circle, its sign being the way there from `last`: radians; none where it is there already.
+fn by_sign(value: f64, last: f64) -> f64 {
+    let place = libm::fabs(value);
+    let turns = (last - place) / TAU;
+    // A place that is left and come back to is the same but for the last bits.
+    let near = libm::rint(turns);
+    if libm::fabs(turns - near) < 1e-9 {
+        return place + near * TAU;
+    }
+    let turns = if value.is_sign_negative() { libm::floor(turns) } else { libm::ceil(turns) };
+    place + turns * TAU
 }
 
 /// The place of `value` on the circle next to `last` that lies inside `travel`.

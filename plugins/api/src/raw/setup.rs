@@ -21,7 +21,12 @@ pub fn with_setup<R>(setup: &Setup<'_>, take: impl FnOnce(&PostSetup) -> R) -> R
             let [least, largest] = word.travel.unwrap_or([f64::NAN; 2]);
             PostAxisWord {
                 name: PostText::new(word.name),
-                rotary: u32::from(word.rotary) + u32::from(word.rotary && word.wrapped),
+                rotary: match (word.rotary, word.wrapped, word.signed) {
+                    (false, ..) => 0,
+                    (true, false, false) => 1,
+                    (true, true, _) => 2,
+                    (true, false, true) => 3,
+                },
                 depth: word.depth.into(),
                 carries_part: word.carries_part.into(),
                 reserved: 0,
@@ -120,6 +125,7 @@ impl PostSetup {
                 name: unsafe { word.name.get() }?,
                 rotary: word.rotary != 0,
                 wrapped: word.rotary == 2,
+                signed: word.rotary == 3,
                 depth: word.depth != 0,
                 carries_part: word.carries_part != 0,
                 travel: (!word.least.is_nan()).then_some([word.least, word.largest]),

@@ -56,18 +56,19 @@ enum Takes {
     From,
 }
 
-const VERBS: [(&str, Takes); 7] = [
+const VERBS: [(&str, Takes); 8] = [
     ("place", Takes::Cl),
     ("words", Takes::ClAlone),
     ("verify", Takes::Against),
     ("predict", Takes::Against),
     ("read", Takes::Program),
+    ("lint", Takes::Program),
     ("diff", Takes::Program),
     ("convert", Takes::From),
 ];
 
 /// Flags of one place each: they cannot be those of several programs.
-const PLACES: [&str; 12] = [
+const PLACES: [&str; 13] = [
     "output",
     "summary",
     "setup-sheet",
@@ -79,6 +80,7 @@ const PLACES: [&str; 12] = [
     "pictures",
     "plan-pictures",
     "json",
+    "sarif",
     "cl",
 ];
 

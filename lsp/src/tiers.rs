@@ -10,7 +10,7 @@ use super::background::{BackgroundFacts, Outlet, Token, WorkProduct};
 use super::document::{Document, FileKind, Snapshot};
 use super::machine::library::Library;
 use super::{cl, findings, machine, nc};
-use post_job::{clearance, machine_files, tools};
+use post_job::{machine_files, tools};
 
 /// The machine that CL files and programs are shown on.
 #[derive(Clone, Debug, Default)]
@@ -132,23 +132,16 @@ impl Work {
             Ok(control) => control,
             Err(faults) => return self.tell(&faults, WorkProduct::Nothing),
         };
-        let proves = self.saved && clearance::is_described(&control.machine);
         let Some(read) = nc::read(&self.of, &control, &self.token) else {
             return;
         };
-        let mut found = match read {
+        match read {
             Err(faults) => return self.tell(&faults, WorkProduct::Nothing),
-            Ok((program, found)) => {
-                self.tell(&found, WorkProduct::Program(program));
-                found
-            }
-        };
-        if proves {
-            let more = nc::not_clear(&self.of, &control, &self.token);
-            // What cannot be read of it was told.
-            found.extend(
-                more.into_iter().filter(|finding| !found.contains(finding)).collect::<Vec<_>>(),
-            );
+            Ok((program, found)) => self.tell(&found, WorkProduct::Program(program)),
+        }
+        if self.saved {
+            // What cannot be read of it is told again.
+            let found = nc::looked_over(&self.of, &control, &self.library, &self.token);
             self.tell(&found, WorkProduct::Nothing);
         }
     }

@@ -10,6 +10,7 @@ mod convert;
 mod diff;
 mod explain;
 mod late;
+mod lint;
 mod list_machines;
 mod list_words;
 mod lsp;
@@ -43,6 +44,7 @@ use convert::ConvertArguments;
 use diff::DiffArguments;
 use explain::ExplainArguments;
 use late::Late;
+use lint::LintArguments;
 use list_machines::MachinesArguments;
 use list_words::WordsArguments;
 use lsp::LspArguments;
@@ -88,6 +90,7 @@ use view::{View, ViewArguments};
   post read part.nc --machine ac-trunnion --csv motions.csv
   post verify part.nc --machine dmu50 --against part.cls --map map.json
   post clearance part.nc --machine dmu50-with-vise.toml --cl part.cls
+  post lint part.nc --machine ac-trunnion
   post diff old.nc new.nc --machine ac-trunnion
   post predict part.nc --machine ac-trunnion --pictures prediction
   post tools tool.tbl --against part.cls
@@ -149,6 +152,7 @@ enum Verb<const LATE: bool> {
     Clearance(Late<Box<ClearanceArguments>, LATE>),
     Convert(Late<Box<ConvertArguments>, LATE>),
     Diff(Late<Box<DiffArguments>, LATE>),
+    Lint(Late<Box<LintArguments>, LATE>),
     New(Late<NewArguments, LATE>),
     Place(Late<Box<PlaceArguments>, LATE>),
     Predict(Late<Box<PredictArguments>, LATE>),
@@ -213,6 +217,7 @@ impl CommandLine {
             Some(Verb::Clearance(Late(arguments))) => clearance::run(session, &arguments),
             Some(Verb::Convert(Late(arguments))) => convert::run(session, &arguments),
             Some(Verb::Diff(Late(arguments))) => diff::run(session, &arguments),
+            Some(Verb::Lint(Late(arguments))) => lint::run(session, &arguments),
             Some(Verb::New(Late(arguments))) => new::run(session, &arguments),
             Some(Verb::Place(Late(arguments))) => place::run(session, &arguments),
             Some(Verb::Predict(Late(arguments))) => predict::run(session, &arguments),

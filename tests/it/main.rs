@@ -41,6 +41,7 @@ mod languages;
 mod lengths;
 mod library;
 #[cfg(target_os = "linux")]
+mod lint;
 mod linuxcnc;
 mod lsp;
 #[cfg(target_os = "linux")]

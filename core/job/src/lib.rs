@@ -20,6 +20,7 @@ pub mod failure;
 pub mod files;
 pub mod job_file;
 pub mod library;
+pub mod lint;
 mod look_ahead;
 pub mod machine_files;
 pub mod machine_schema;

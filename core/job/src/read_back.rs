@@ -15,7 +15,7 @@ use post_readback::course::cl::{ClCourse, ClSettings, ClTool};
 use post_readback::course::{Course, CourseWindow};
 use post_readback::interpret::Limits;
 use post_readback::verify::{
-    BlockReport, CutBounds, CutPath, Fault, OwnStops, Verification, Verifier, VerifyRules,
+    BlockReport, CutBounds, CutPath, OwnStops, Verification, Verifier, VerifyRules,
 };
 use post_readback::{BlockEffect, MOST_FAULTS, Offsets, ProgramRun};
 
@@ -378,7 +378,8 @@ pub fn hold<C: Course>(
     drop(run);
     findings.extend(found.course_faults.iter().cloned());
     findings.extend(noticed(name, &found));
-    let texts = lines_of(&mut input, &found.faults).map_err(unreadable)?;
+    let wanted = found.faults.iter().filter_map(|fault| fault.nc_line).collect();
+    let texts = lines_of(&mut input, wanted).map_err(unreadable)?;
     for fault in &found.faults {
         let text = fault.nc_line.and_then(|line| texts.iter().find(|(known, _)| *known == line));
         let text = text.map_or("", |(_, text)| text.as_str());
@@ -460,12 +461,11 @@ fn rules(reading: &ReadingSetup<'_>, control: &NcControl, tools: &[ClTool]) -> V
     }
 }
 
-/// The texts of the lines that faults name.
-fn lines_of(
+/// The texts of the lines that are wanted, in their order.
+pub(crate) fn lines_of(
     input: &mut (impl Read + Seek),
-    faults: &[Fault],
+    mut wanted: Vec<u64>,
 ) -> std::io::Result<Vec<(u64, String)>> {
-    let mut wanted: Vec<u64> = faults.iter().filter_map(|fault| fault.nc_line).collect();
     wanted.sort_unstable();
     wanted.dedup();
     let Some(last) = wanted.last().copied() else {

@@ -5,7 +5,7 @@ use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 use post_plugin::Meaning;
-use post_readback::interpret::{ModalGroup, ReadReport};
+use post_readback::interpret::{ModalGroup, ModesInForce, ReadReport};
 
 use super::nc_program::DialectVocabulary;
 use super::plugin_finder;
@@ -35,7 +35,7 @@ impl Unsaid<'_> {
         findings.extend(self.cut_off());
         findings.extend(self.modes(finder, machine));
         findings.extend(self.retract());
-        findings.extend(self.end());
+        findings.extend(self.own.then(|| self.end()).flatten());
         if plugin_finder::text(finder, machine, "tapping").as_deref() == Some("rigid") {
             findings.extend(self.bare_taps());
         }
@@ -145,22 +145,40 @@ impl Unsaid<'_> {
     }
 
     /// That it ends, and what it leaves to whatever runs next.
-    fn end(&self) -> Option<Diagnostic> {
-        let last_line = self.last_line.filter(|_| self.own)?;
+    pub fn end(&self) -> Option<Diagnostic> {
+        let last_line = self.last_line?;
         let Some(end) = &self.report.end else {
             let message = "no word of the program ends it: the control stops there with an alarm, or goes on in what stands behind it";
             let help = "end it by the control's word: M30, M2, or M99 where it is called";
-            return Some(Diagnostic::error("missing", message).help(help).at(self.at(last_line)));
+            return Some(
+                self.graded("missing", message.to_owned()).help(help).at(self.at(last_line)),
+            );
         };
-        if end.in_force.is_empty() {
+        let message = |modes: &str| {
+            format!("the program ends with {modes} in force: whatever runs next begins so")
+        };
+        self.in_force(end, &message)
+    }
+
+    /// That a tool is changed with something in force.
+    pub fn change(&self) -> Option<Diagnostic> {
+        let message = |modes: &str| {
+            format!("the tool is changed with {modes} in force: what that does the control decides")
+        };
+        self.in_force(self.report.changed.as_ref()?, &message)
+    }
+
+    fn in_force(
+        &self,
+        held: &ModesInForce,
+        message: &dyn Fn(&str) -> String,
+    ) -> Option<Diagnostic> {
+        if held.modes.is_empty() {
             return None;
         }
-        let message = format!(
-            "the program ends with {} in force: whatever runs next begins so",
-            end.in_force.join(" and ")
-        );
         let help = "switch it off behind the last cut that needs it";
-        Some(Diagnostic::error("nc-modes", message).help(help).at(self.at(end.line)))
+        let finding = self.graded("nc-modes", message(&held.modes.join(" and ")));
+        Some(finding.help(help).at(self.at(held.line)))
     }
 
     /// Taps that should be rigid without the word ahead of them that makes them so.

@@ -3,16 +3,16 @@
 //! | file | does |
 //! |---|---|
 //! | `program` | the program read back on the chosen machine: what holds at each line |
-//! | `clear` | what hits something on the chosen machine |
+//! | `lint` | what is wrong with it on the chosen machine |
 //! | `hover` | what is said of a line |
 //! | `map` | the CL line that a line came from, as `post verify --map` tells it |
 
-mod clear;
 pub mod hover;
+mod lint;
 pub mod map;
 mod program;
 
-pub use clear::not_clear;
+pub use lint::looked_over;
 pub use program::{InterpretedProgram, control, read};
 
 /// Endings of NC programs.

@@ -1,10 +1,10 @@
 //! What an NC program makes its machine do: in numbers, as rows, and as a CL file.
 
-mod beyond_travel;
+pub(crate) mod beyond_travel;
 mod motions_csv;
 mod survey;
 
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Severity};
 use post_readback::course::program::{Chords, ProgramCourse};
 use post_readback::interpret::ReadReport;
 use post_readback::{FedRapids, MOST_FAULTS};
@@ -68,7 +68,7 @@ pub fn read<'m>(
     let (tables, cl_files) = files.split_at_mut(usize::from(csv.is_some()));
     let mut table = tables.first_mut().map(|file| MotionsCsv::new(&control.machine, file));
     let mut survey = ProgramSurvey::new(&control.machine);
-    let mut beyond = BeyondTravel::default();
+    let mut beyond = BeyondTravel::new(&control.machine);
     while let Some(done) = run.block() {
         for what in done {
             survey.take(what);
@@ -93,7 +93,9 @@ pub fn read<'m>(
         // A path with gaps is none.
         files.truncate(usize::from(csv.is_some()));
     }
-    refused.extend(beyond.findings(name));
+    // How fast it goes is the control's.
+    let beyond = beyond.findings(name);
+    refused.extend(beyond.filter(|finding| finding.severity == Severity::Error));
     let printed = files.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, files)?;
     let report = run.program().report().clone();

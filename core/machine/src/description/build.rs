@@ -399,6 +399,7 @@ impl Builder<'_> {
             stock,
             outlines,
             clearance,
+            lint_ignored: file.lint.ignore.iter().map(|code| code.get_ref().clone()).collect(),
         };
         self.frame(file.control.get_ref(), &mut machine);
         self.check_edge(file, &machine);

@@ -111,6 +111,8 @@ keys! {
         stock: Option<Spanned<BodyFile>>,
         /// Distances that bodies keep from one another: for `post clearance`.
         clearance: ClearanceFile,
+        /// What `post lint` looks for in NC programs.
+        lint: LintFile,
         /// How far the axes are from their set-points, by their letters; those of an axis without are followed exactly.
         servo: BTreeMap<String, Spanned<ServoFile>> = AXES,
         /// The control and its language.
@@ -178,6 +180,14 @@ keys! {
         /// It turns the part, and SFM and SMM are constant cutting speeds that the control keeps (G96); else they are
         /// those of the cutter's diameter, as revolutions a minute.
         surface_speed: bool = Bounds::OFF,
+    }
+}
+
+keys! {
+    /// What `post lint` looks for in NC programs.
+    LintFile {
+        /// Codes of findings that are not told of programs of this machine, such as `["coolant"]`.
+        ignore: Vec<Spanned<String>> = Bounds { default: Some("[]"), ..Bounds::ANY },
     }
 }
 

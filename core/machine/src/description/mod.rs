@@ -187,6 +187,8 @@ pub struct Machine {
     pub outlines: Vec<ToolOutline>,
     /// Distances that bodies keep.
     pub clearance: ClearanceRules,
+    /// Codes of findings that are not told of its programs.
+    pub lint_ignored: Vec<String>,
 }
 
 /// A table of options for a plugin that the machine does not use: a machine may carry those of several dialects.

@@ -11,7 +11,7 @@ use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
 use super::spindle_request::SpindleRequest;
 use super::state::{ControlState, FeedMeaning, MotionMode};
-use super::{ModalGroup, ProgramEnd, cycles, frames, names, planes};
+use super::{ModalGroup, ModesInForce, cycles, frames, names, planes};
 use crate::g_code::GCode;
 use crate::lexicon::WordMeaning;
 use crate::{Curve, MotionKind, ProgramEvent};
@@ -344,8 +344,8 @@ impl ControlState {
         Ok(())
     }
 
-    /// The program ends.
-    pub(super) fn end(&mut self) {
+    /// What is in force that should end before a tool change or the end of the program, as messages call it.
+    pub(super) fn in_force(&self) -> Vec<&'static str> {
         let holds = [
             (self.state.compensation != 0, "radius compensation"),
             (self.cycles.in_force(), "a cycle"),
@@ -353,8 +353,12 @@ impl ControlState {
             (self.face.is_some(), "polar interpolation"),
             (self.state.tcp, "tool centre point control"),
         ];
-        let in_force = holds.iter().filter(|(holds, _)| *holds).map(|(_, name)| *name).collect();
-        self.report.end = Some(ProgramEnd { line: self.line, in_force });
+        holds.iter().filter(|(holds, _)| *holds).map(|(_, name)| *name).collect()
+    }
+
+    /// The program ends.
+    pub(super) fn end(&mut self) {
+        self.report.end = Some(ModesInForce { line: self.line, modes: self.in_force() });
         self.tell(ProgramEvent::End);
         self.ended = true;
     }

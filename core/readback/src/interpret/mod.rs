@@ -109,16 +109,18 @@ pub struct ReadReport {
     /// led nowhere before: where they stand then is not known.
     pub unretracted: Option<(u64, String)>,
     /// How the program ends; none: no word of it does that.
-    pub end: Option<ProgramEnd>,
+    pub end: Option<ModesInForce>,
+    /// The first tool change with something in force that controls want ended before.
+    pub changed: Option<ModesInForce>,
 }
 
-/// The end of a program, and what is in force there: whatever runs next begins with it.
+/// The end of a program or a tool change, and what is in force there: whatever runs next begins with it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ProgramEnd {
+pub struct ModesInForce {
     /// Line of the program.
     pub line: u64,
     /// What is in force, as messages call it.
-    pub in_force: Vec<&'static str>,
+    pub modes: Vec<&'static str>,
 }
 
 /// Runs blocks one by one.

@@ -5,6 +5,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 use post_plugin::Language;
 
+use super::ModesInForce;
 use super::state::{ArcPlane, ControlState};
 use crate::ProgramEvent;
 
@@ -38,6 +39,11 @@ impl ControlState {
         name: Option<String>,
     ) -> Result<(), Box<Diagnostic>> {
         self.begins();
+        if self.report.changed.is_none() {
+            let modes = self.in_force();
+            let held = (!modes.is_empty()).then_some(ModesInForce { line: self.line, modes });
+            self.report.changed = held;
+        }
         self.state.tool = number;
         self.tools.longer = 0.0;
         self.state.standstill.change = Some(self.line);

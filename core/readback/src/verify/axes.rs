@@ -31,23 +31,19 @@ const LOOKS: u32 = 64;
 const MOST_LOOKS: u32 = 4096;
 
 /// An axis passes a limit.
-pub(crate) struct AxisFault {
+#[derive(Clone, Debug)]
+pub struct AxisFault {
+    /// What messages call it: `over-travel`, `max-feed`.
     pub code: &'static str,
+    /// What is to be said of it.
     pub message: String,
     /// By how much, mm or degrees, or these a minute.
     pub by: f64,
 }
 
-/// Where a motion takes an axis beyond its travel: which, and by how much, mm or degrees.
-pub fn over_travel(machine: &Machine, motion: &Motion) -> Option<(String, f64)> {
-    let bend = bend_between_words(motion);
-    let fault = AxisLimitCheck::new(machine).over_travel(machine, motion, bend)?;
-    Some((fault.message, fault.by))
-}
-
 /// What is known of the axes of a machine.
 #[derive(Clone, Debug)]
-pub(crate) struct AxisLimitCheck {
+pub struct AxisLimitCheck {
     /// Minutes that each axis needs for one mm or radian.
     slowness: Joints,
     /// Legs drive the machine, each with a largest feed.
@@ -82,6 +78,7 @@ impl PartWays {
 }
 
 impl AxisLimitCheck {
+    /// Of `machine`, before its first motion.
     pub fn new(machine: &Machine) -> Self {
         let slowness = machine.slowness();
         let driven = machine.legs().any(|leg| leg.max_feed.is_finite());
@@ -91,6 +88,14 @@ impl AxisLimitCheck {
             limited: driven || slowness.iter().any(|slowness| *slowness > 0.0),
             anywhere: machine.part_sits_anywhere().then(|| Box::new(PartWays::NONE)),
         }
+    }
+
+    /// What a motion asks too much of the axes: travel, and at feed their largest feeds.
+    pub fn passed(&mut self, machine: &Machine, motion: &Motion) -> [Option<AxisFault>; 2] {
+        let bend = bend_between_words(motion);
+        let fed = motion.kind != MotionKind::Rapid;
+        let fast = fed.then(|| self.too_fast(machine, motion, bend)).flatten();
+        [self.over_travel(machine, motion, bend), fast]
     }
 
     /// An axis leaves its travel; `bend` is [`bend_between_words`] of the motion.

@@ -49,9 +49,7 @@ use crate::{
     BlockEffect, CycleKind, MOST_FAULTS, MachineState, Motion, MotionKind, Offsets, ProgramEvent,
     SpindleState,
 };
-use axes::AxisFault;
-pub(crate) use axes::AxisLimitCheck;
-pub use axes::over_travel;
+pub use axes::{AxisFault, AxisLimitCheck};
 pub use cut_bounds::CutBounds;
 pub use cut_path::CutPath;
 use detour::Detour;

@@ -1,0 +1,179 @@
+//! An NC program of whatever origin is looked over: what is wrong, or likely to be, for whom has no CL file.
+//!
+//! | file | looks for, or tells |
+//! |---|---|
+//! | `watch` | spindle, coolant, tool length, feed and arcs at each motion |
+//! | `depths` | rapids that go lower than anything was cut before |
+//! | `summary`, `sarif` | what was found, for programs to read |
+
+mod depths;
+mod sarif;
+mod summary;
+mod watch;
+
+use std::io::Seek as _;
+
+use post_host::Finder;
+use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
+use post_readback::interpret::ReadReport;
+use post_readback::{BlockEffect, MOST_FAULTS, ProgramRun};
+
+use crate::cl_facts::ClFacts;
+use crate::clearance;
+use crate::failure::Failure;
+use crate::files::FileFault;
+use crate::nc_program::{self, NcControl, ProgramText};
+use crate::read::ProgramSurvey;
+use crate::read::beyond_travel::BeyondTravel;
+use crate::read_back::lines_of;
+use crate::unsaid::Unsaid;
+use depths::CutDepths;
+use watch::LintWatch;
+
+pub use sarif::{CodeText, sarif};
+pub use summary::{FindingSummary, LintSummary};
+
+/// What was found of a program.
+pub struct LintedProgram<'m> {
+    /// What is wrong with it, and what may be: in the order of its lines.
+    pub findings: Vec<Diagnostic>,
+    /// Codes of findings that are not told, and how many of each there were.
+    pub ignored: Vec<(&'static str, u64)>,
+    /// What the program did.
+    pub survey: ProgramSurvey<'m>,
+    /// What was read.
+    pub report: ReadReport,
+}
+
+impl LintedProgram<'_> {
+    /// Time at the feeds that the program states, of rapids at the largest feeds of the axes, and of waits, s.
+    pub fn seconds(&self) -> f64 {
+        60.0 * self.survey.minutes.iter().sum::<f64>() + self.survey.waits
+    }
+
+    /// Something is wrong; where it is `strict`, or may be.
+    pub fn is_wrong(&self, strict: bool) -> bool {
+        self.findings.iter().any(|finding| strict || finding.severity == Severity::Error)
+    }
+}
+
+/// Looks over the program `name` in `text`; findings of the codes in `ignored`, and of those that the machine file names,
+/// are only counted.
+///
+/// # Errors
+/// The program cannot be read again, or the machine cannot be solved.
+pub fn look_over<'m>(
+    control: &'m NcControl,
+    finder: &Finder,
+    name: &str,
+    mut text: ProgramText<'_>,
+    ignored: &[String],
+) -> Result<LintedProgram<'m>, Failure> {
+    let machine = &control.machine;
+    let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
+    let proven = clearance::is_described(machine);
+    let depths = match machine.stock.is_some() {
+        // Bodies tell it better.
+        true => None,
+        false => {
+            let mut depths = CutDepths::default();
+            run(control, name, &mut text, |done| depths.gather(done))?;
+            text.rewind().map_err(unreadable)?;
+            Some(depths)
+        }
+    };
+    let mut watch = LintWatch::new(control, depths);
+    let mut beyond = BeyondTravel::new(machine);
+    let mut survey = ProgramSurvey::new(machine);
+    let ran = run(control, name, &mut text, |done| {
+        watch.take(done);
+        beyond.take(machine, done);
+        survey.take(done);
+    })?;
+    let RanProgram { report, faults, last_line } = ran;
+    let mut found = faults;
+    found.extend(report.notes.iter().cloned());
+    let unsaid = Unsaid { name, report: &report, spoken: &control.spoken, own: false, last_line };
+    found.extend(unsaid.findings(finder, machine));
+    found.extend(unsaid.change());
+    found.extend(unsaid.end());
+    found.extend(nc_program::unknown_words(name, &report, machine));
+    found.extend(beyond.findings(name));
+    found.extend(beyond.part_place(machine, name));
+    found.extend(watch.finish(name));
+    if proven {
+        text.rewind().map_err(unreadable)?;
+        let clear =
+            clearance::prove(control, name, Box::new(&mut text), &ClFacts::default(), None)?;
+        // What cannot be read of it was told.
+        let told = found.len();
+        let news = clear.findings.into_iter().filter(|finding| !found[..told].contains(finding));
+        let news: Vec<Diagnostic> = news.collect();
+        found.extend(news);
+    }
+    let is_ignored = |finding: &Diagnostic| {
+        let mut codes = ignored.iter().chain(&machine.lint_ignored);
+        codes.any(|code| code == finding.code)
+    };
+    let (left_out, mut findings): (Vec<_>, Vec<_>) = found.into_iter().partition(is_ignored);
+    let mut counts: Vec<(&'static str, u64)> = Vec::new();
+    for finding in left_out {
+        match counts.iter_mut().find(|(code, _)| *code == finding.code) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((finding.code, 1)),
+        }
+    }
+    findings.sort_by_key(|finding| finding.place.as_ref().map_or(0, |place| place.line));
+    text.rewind().map_err(unreadable)?;
+    show_lines(&mut findings, name, &mut text).map_err(unreadable)?;
+    Ok(LintedProgram { findings, ignored: counts, survey, report })
+}
+
+/// A program that was run to its end.
+struct RanProgram {
+    report: ReadReport,
+    /// What of it cannot be understood.
+    faults: Vec<Diagnostic>,
+    /// Its last line; none where it was given up.
+    last_line: Option<u64>,
+}
+
+/// Runs the program `name` from its beginning, past what cannot be understood; `take` is told what it does.
+fn run(
+    control: &NcControl,
+    name: &str,
+    text: &mut ProgramText<'_>,
+    mut take: impl FnMut(&BlockEffect),
+) -> Result<RanProgram, Failure> {
+    let mut run = ProgramRun::new(control.program_with_rapids(name, Box::new(text))?);
+    while let Some(done) = run.block() {
+        done.iter().for_each(&mut take);
+    }
+    let program = run.program().program();
+    let (report, (line, _)) = (program.report().clone(), program.stand());
+    let mut faults = run.into_faults();
+    let given_up = faults.len() == MOST_FAULTS;
+    if given_up {
+        faults.push(nc_program::given_up());
+    }
+    Ok(RanProgram { report, faults, last_line: (!given_up).then_some(line) })
+}
+
+/// Puts the texts of the lines into findings that have none.
+fn show_lines(
+    findings: &mut [Diagnostic],
+    name: &str,
+    text: &mut ProgramText<'_>,
+) -> std::io::Result<()> {
+    let places = findings.iter_mut().filter_map(|finding| finding.place.as_mut());
+    let mut bare: Vec<&mut SourcePlace> =
+        places.filter(|place| place.file == name && place.text.is_empty()).collect();
+    let texts = lines_of(text, bare.iter().map(|place| place.line).collect())?;
+    for place in &mut bare {
+        if let Ok(at) = texts.binary_search_by_key(&place.line, |(line, _)| *line) {
+            let text = &texts[at].1;
+            **place = SourcePlace::new(name, place.line, text, 0..text.len());
+        }
+    }
+    Ok(())
+}

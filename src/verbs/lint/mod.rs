@@ -1,0 +1,152 @@
+//! `post lint`: what is wrong with an NC program, or may be, without a CL file.
+
+mod lint_text;
+
+use clap::Args;
+use post_cli::arguments::ProgramArguments;
+use post_cli::arguments::flag_values::file;
+use post_cli::terminal;
+use post_job::failure::Failure;
+use post_job::files::{self, AtomicFile, PathArg, Role};
+use post_job::lint::{self, CodeText, LintSummary};
+use post_job::nc_program::{NcControl, ProgramFile};
+use post_job::plugin_finder;
+use post_job::session::Session;
+use post_machine::diagnostic::{Diagnostic, Severity, nearest};
+
+use crate::codes::codes;
+
+/// Looks over NC programs of whatever origin: what is wrong, and what may be.
+///
+/// No CL file is needed. Told is what the control would refuse or what is not understood; axes beyond their travel or
+/// their largest feed; cuts while the spindle stands or without a feed; a tool without its length, or with that of
+/// another; coolant that is gone in the middle of a tool's work; rapids that go where nothing was cut before; modes that
+/// the program relies on or leaves behind; and, with bodies in the machine file, all that `post clearance` tells.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  post lint part.nc --machine ac-trunnion
+  post lint *.nc -m vmc --ignore coolant --ignore register --strict
+  post lint part.h -m dmu50 --offsets control.toml --sarif lint.sarif
+  post lint part.nc -m vmc --set 'lint.ignore=[\"coolant\"]' --json - -q
+  post explain rapid
+
+Exit codes: 0 nothing is wrong, but for warnings; 1 something is, with --strict warnings among it; 2 the command line is
+wrong.")]
+pub struct LintArguments {
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// The NC programs, `-` for standard input.
+    #[arg(value_name = "NC-FILE", value_parser = file(), required = true)]
+    inputs: Vec<PathArg>,
+
+    /// Does not tell findings of this code, as it stands in brackets: `coolant` of `warning[coolant]`. Repeatable; how many
+    /// there are is said. `[lint] ignore` of the machine file says so of all programs of a machine.
+    #[arg(long, value_name = "CODE")]
+    ignore: Vec<String>,
+
+    /// Counts warnings as errors.
+    #[arg(long)]
+    strict: bool,
+
+    /// Writes what was found as JSON, of several programs a list; `-` is standard output.
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    json: Option<PathArg>,
+
+    /// Writes what was found as SARIF 2.1.0, which code hosts and editors show at the lines; `-` is standard output.
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    sarif: Option<PathArg>,
+}
+
+/// The group of codes whose sense is that of this verb.
+const GROUP: &str = "Looking a program over";
+
+/// What SARIF is written to.
+const SARIF: Role = Role { what: "SARIF", remedy: "name another file with --sarif" };
+
+/// Does as the arguments say.
+pub fn run(session: &Session, arguments: &LintArguments) -> Result<(), Failure> {
+    let settings = arguments.program.settings();
+    let control = NcControl::new(session, &settings)?;
+    let finder = plugin_finder::finder(session, &settings.plugins)?;
+    for code in &arguments.ignore {
+        known(code, "--ignore")?;
+    }
+    for code in &control.machine.lint_ignored {
+        known(code, "[lint] ignore of the machine file")?;
+    }
+    let programs: Vec<ProgramFile> = arguments
+        .inputs
+        .iter()
+        .map(|input| ProgramFile::open(session, input))
+        .collect::<Result<_, _>>()?;
+    let mut targets: Vec<(Role, &PathArg)> = Vec::new();
+    targets.extend(arguments.json.iter().map(|target| (Role::JSON, target)));
+    targets.extend(arguments.sarif.iter().map(|target| (SARIF, target)));
+    let mut written = AtomicFile::create(session, &targets)?;
+    let (mut text, mut summaries, mut findings) = (String::new(), Vec::new(), Vec::new());
+    let mut wrong = false;
+    for program in &programs {
+        let name = &program.name;
+        let source = Box::new(program.text()?);
+        let linted = lint::look_over(&control, &finder, name, source, &arguments.ignore)?;
+        wrong |= linted.is_wrong(arguments.strict);
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        text.push_str(&lint_text::text(&control.machine, name, &linted));
+        summaries.push(LintSummary::new(name, &control.machine.name, &linted));
+        findings.extend(linted.findings);
+    }
+    let mut texts = Vec::new();
+    texts.extend(arguments.json.as_ref().map(|_| match summaries.as_slice() {
+        [one] => files::json(one),
+        all => files::json(&all),
+    }));
+    texts.extend(
+        arguments
+            .sarif
+            .as_ref()
+            .map(|_| lint::sarif(&findings, env!("CARGO_PKG_VERSION"), &described)),
+    );
+    for (file, text) in written.iter_mut().zip(&texts) {
+        file.write_bytes(text.as_bytes())?;
+    }
+    let printed = written.iter().any(AtomicFile::is_standard);
+    AtomicFile::finish(session, written)?;
+    terminal::print_beside(session, &text, printed);
+    if wrong && arguments.strict {
+        return Err(findings.into());
+    }
+    let (errors, warnings): (Vec<_>, Vec<_>) =
+        findings.into_iter().partition(|finding| finding.severity == Severity::Error);
+    session.findings(&warnings);
+    if errors.is_empty() { Ok(()) } else { Err(errors.into()) }
+}
+
+/// What a code means here, and what helps.
+fn described(name: &str) -> Option<CodeText> {
+    let groups = codes();
+    let of = |own: bool| {
+        let groups = groups.iter().filter(move |group| !own || group.title == GROUP);
+        groups.flat_map(|group| &group.codes).find(|code| code.name == name)
+    };
+    let code = of(true).or_else(|| of(false))?;
+    Some(CodeText { meaning: code.meaning, remedy: code.remedy })
+}
+
+/// Refuses a code that no message has.
+fn known(code: &str, said_by: &str) -> Result<(), Failure> {
+    let all = codes();
+    let mut names = all.iter().flat_map(|group| &group.codes).map(|code| code.name);
+    if names.any(|name| name == code) {
+        return Ok(());
+    }
+    let names = all.iter().flat_map(|group| &group.codes).map(|code| code.name);
+    let help = match nearest(code, names) {
+        Some(near) => format!("a similar code exists: {near}"),
+        None => "`post explain` lists all codes".to_owned(),
+    };
+    let message = format!("no message has the code {code}, which {said_by} names");
+    Err(Diagnostic::error("option", message).help(help).into())
+}

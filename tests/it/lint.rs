@@ -1,0 +1,181 @@
+//! `post lint`: each rule on a program that breaks it and on one that does not, the forms of what is found, programs of
+//! other posts, and how many of random mistakes are seen.
+
+mod mistakes;
+mod strangers;
+
+use std::fs;
+use std::path::Path;
+
+use post_testkit::assert_contains;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::common::{post_in, root};
+
+/// A contour, and a slot inside of it: nothing is wrong.
+const GOOD: &str = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z0.\nT1 M6\nS1000 M3\nG54\nG0 X0. Y0.\nG43 H1 Z50.\nM8\nG0 Z2.\n\
+    G1 Z-5. F500.\nX60.\nG3 X70. Y10. I0. J10.\nG1 Y40.\nX0.\nY0.\nG0 Z50.\nT2 M6\nS2000 M3\nM8\nG0 X30. Y20.\nG43 H2 Z50.\nZ2.\n\
+    G1 Z-5. F300.\nX40.\nZ-8.\nX30.\nG0 Z50.\nM9\nM5\nG49\nG53 G0 Z0.\nM30\n%\n";
+
+/// A folder with a program, and what is found of it as JSON on a machine that `more` is added to.
+fn linted(program: &str, more: &str, words: &[&str]) -> (TempDir, i32, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.nc"), program).unwrap();
+    let machine = format!(
+        "extends = \"vmc\"\nname = \"mine\"\n[workpiece]\nmount = [0, 0, -400]\n[tools.1]\nlength = 100\n[tools.2]\nlength = 120\n{more}"
+    );
+    fs::write(folder.path().join("mine.toml"), machine).unwrap();
+    let mut all = vec![
+        "lint",
+        "part.nc",
+        "-m",
+        "mine.toml",
+        "--json",
+        "found.json",
+        "--sarif",
+        "found.sarif",
+    ];
+    all.extend(words);
+    let run = post_in(folder.path(), &all);
+    let found = fs::read_to_string(folder.path().join("found.json"));
+    let found = found.unwrap_or_else(|_| panic!("{}", run.err));
+    (folder, run.code, serde_json::from_str(&found).unwrap())
+}
+
+/// Code and line of each finding.
+fn told(found: &Value) -> Vec<(String, u64)> {
+    let findings = found["findings"].as_array().unwrap().iter();
+    findings
+        .map(|one| (one["code"].as_str().unwrap().to_owned(), one["line"].as_u64().unwrap_or(0)))
+        .collect()
+}
+
+#[test]
+fn each_rule_is_told_at_its_line_and_a_good_program_breaks_none() {
+    let (_folder, code, found) = linted(GOOD, "", &["--strict"]);
+    assert_eq!((told(&found), code), (Vec::new(), 0), "{found:#}");
+    for (from, to, code, line) in [
+        ("X60.\n", "X900.\n", "over-travel", 13),
+        ("G1 Z-5. F500.", "G1 Z-5. F90000.", "max-feed", 13),
+        ("G1 Z-5. F500.", "G1 Z-5. F0", "feed", 12),
+        ("S1000 M3", "S1000", "spindle", 12),
+        ("S2000 M3\n", "\n", "spindle", 25),
+        ("S1000 M3", "S0 M3", "spindle-speed", 12),
+        ("X40.\nZ-8.", "X40. M9\nZ-8.", "coolant", 26),
+        ("G43 H2 Z50.", "G0 Z50.", "length", 25),
+        ("G43 H1 Z50.", "G0 Z50.", "length", 11),
+        ("G43 H2", "G43 H1", "length", 25),
+        ("G43 H2", "G43 H3", "register", 25),
+        ("G43 H1", "G43 H2", "register", 12),
+        ("Z2.\nG1 Z-5. F300.\nX40.", "Z2.\nG0 Z-5.\nG1 X40. F300.", "rapid", 25),
+        ("Z2.\nG1 Z-5. F300.", "Z-7.\nG1 Z-5. F300.", "rapid", 24),
+        ("I0. J10.", "I0. J12.", "nc-arc", 14),
+        ("G3 X70. Y10. I0. J10.", "G3 X59.996 Y0. I0. J10.", "full-circle", 14),
+        ("G3 X70. Y10. I0. J10.", "G65 P9810 X70.", "nc-subprogram", 14),
+        ("G21 ", "", "nc-modes", 4),
+        ("G49\n", "G41 D1\n", "nc-modes", 34),
+        ("T2 M6", "G41 D1\nT2 M6", "nc-modes", 20),
+        ("M30\n", "", "missing", 34),
+    ] {
+        let program = GOOD.replacen(from, to, 1);
+        assert_ne!(program, GOOD, "{from}");
+        let (_folder, exit, found) = linted(&program, "", &["--strict"]);
+        let told = told(&found);
+        assert!(told.contains(&(code.to_owned(), line)), "{from:?} as {to:?}: {told:?}\n{found:#}");
+        assert_eq!(exit, 1);
+    }
+}
+
+/// Where the stock is known it is proven what a rapid hits, and not guessed.
+#[test]
+fn with_bodies_what_is_proven_stands_in_the_place_of_what_is_guessed() {
+    let deep = GOOD.replace("Z2.\nG1 Z-5. F300.\nX40.", "Z2.\nG0 Z-5.\nG1 X40. F300.");
+    let bodies = "cutter = [[0, 3], [60, 3]]\n[stock]\nblock = [[3, 3, -20], [57, 37, 0]]\n";
+    let (_folder, code, found) = linted(&deep, bodies, &[]);
+    assert_eq!(code, 1);
+    assert!(told(&found).contains(&("clearance".to_owned(), 25)), "{found:#}");
+    assert!(told(&found).iter().all(|(code, _)| code != "rapid"), "{found:#}");
+}
+
+#[test]
+fn what_is_ignored_is_counted_and_what_no_message_has_is_refused() {
+    let wet = GOOD.replace("X40.\nZ-8.", "X40. M9\nZ-8.").replace("G43 H2", "G43 H3");
+    let (_folder, code, found) = linted(&wet, "", &[]);
+    assert_eq!((told(&found).len(), code), (2, 0), "warnings alone: {found:#}");
+    let ours = "[lint]\nignore = [\"coolant\"]\n";
+    let (folder, code, found) = linted(&wet, ours, &["--ignore", "register", "--strict"]);
+    assert_eq!((told(&found).len(), code), (0, 0), "{found:#}");
+    assert_eq!(found["ignored"].as_array().unwrap().len(), 2);
+    for words in [&["--ignore", "colant"][..], &["--set", "lint.ignore=[\"colant\"]"][..]] {
+        let mut all = vec!["lint", "part.nc", "-m", "mine.toml"];
+        all.extend(words);
+        let run = post_in(folder.path(), &all);
+        assert_eq!(run.code, 1, "{}", run.out);
+        assert_contains(&run.err, &["no message has the code colant", "coolant"]);
+    }
+}
+
+/// As the schema of SARIF 2.1.0 asks: each result has its rule, a level and a region that is in the file.
+#[test]
+fn sarif_names_rule_level_and_region_of_each_finding() {
+    let program = GOOD.replace("G43 H2", "G43 H3").replace("X60.\n", "X900.\n");
+    let (folder, _, found) = linted(&program, "", &[]);
+    let text = fs::read_to_string(folder.path().join("found.sarif")).unwrap();
+    let log: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(log["version"], "2.1.0");
+    let run = &log["runs"][0];
+    let rules = run["tool"]["driver"]["rules"].as_array().unwrap();
+    let results = run["results"].as_array().unwrap();
+    assert_eq!(results.len(), told(&found).len());
+    assert!(results.len() > 1);
+    for (result, (code, line)) in results.iter().zip(told(&found)) {
+        assert_eq!(result["ruleId"], code.as_str());
+        let rule = &rules[usize::try_from(result["ruleIndex"].as_u64().unwrap()).unwrap()];
+        assert_eq!(rule["id"], code.as_str());
+        assert!(rule["shortDescription"]["text"].as_str().unwrap().len() > 10, "{rule}");
+        assert!(["error", "warning"].contains(&result["level"].as_str().unwrap()));
+        let place = &result["locations"][0]["physicalLocation"];
+        assert_eq!(place["artifactLocation"]["uri"], "part.nc");
+        assert_eq!(place["region"]["startLine"], line);
+        let text = program.lines().nth(usize::try_from(line).unwrap() - 1).unwrap();
+        assert_eq!(place["region"]["endColumn"].as_u64().unwrap(), text.len() as u64 + 1);
+    }
+}
+
+/// The hook's own line, as pre-commit runs it: with the names of files behind it.
+#[test]
+fn the_hook_for_pre_commit_lets_good_programs_pass_alone() {
+    let hook = root().join("editors/pre-commit/pre-commit-config.yaml");
+    let hook = fs::read_to_string(hook).unwrap();
+    let entry = hook.lines().find_map(|line| line.trim().strip_prefix("entry: post ")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let blade = root().join("tests/samples/blade.cls");
+    let blade = blade.to_str().unwrap();
+    let made = post_in(
+        folder.path(),
+        &[blade, "-m", "ac-trunnion", "-o", "good.nc", "-q", "--tool-length", "100"],
+    );
+    assert_eq!(made.code, 0, "{}", made.err);
+    let good = fs::read_to_string(folder.path().join("good.nc")).unwrap();
+    fs::write(folder.path().join("bad.nc"), good.replacen("M3", "M5", 1)).unwrap();
+    for (files, code) in [(&["good.nc"][..], 0), (&["good.nc", "bad.nc"][..], 1)] {
+        let mut words: Vec<&str> = entry.split_whitespace().collect();
+        words.extend(["--tool-length", "100"]);
+        words.extend(files);
+        let run = post_in(folder.path(), &words);
+        assert_eq!(run.code, code, "{files:?}: {}{}", run.out, run.err);
+    }
+    let pattern = hook.lines().find_map(|line| line.trim().strip_prefix("files: ")).unwrap();
+    for ending in post_lsp_endings() {
+        assert!(pattern.contains(&ending), "{ending} is not in {pattern}");
+    }
+}
+
+/// The endings by which the language server knows programs.
+fn post_lsp_endings() -> Vec<String> {
+    let text = fs::read_to_string(root().join(Path::new("lsp/src/nc/mod.rs"))).unwrap();
+    let list = text.split_once("ENDINGS").unwrap().1;
+    let list = list.split_once("&[\"").unwrap().1.split_once("\"]").unwrap().0;
+    list.split("\", \"").map(str::to_owned).collect()
+}

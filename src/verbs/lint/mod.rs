@@ -27,11 +27,11 @@ use crate::codes::codes;
   post lint part.nc --machine ac-trunnion
   post lint *.nc -m vmc --ignore coolant --ignore register --strict
   post lint part.h -m dmu50 --offsets control.toml --sarif lint.sarif
-  post lint part.nc -m vmc --set 'lint.ignore=[\"coolant\"]' --json - -q
+  post lint part.nc -m vmc --set 'lint.ignore=[\"coolant\"]' --json -
   post explain rapid
 
-Exit codes: 0 nothing is wrong, but for warnings; 1 something is, with --strict warnings among it; 2 the command line is
-wrong.")]
+Exit codes: 0 nothing is wrong, but for warnings; 1 something is, with --strict warnings too;
+2 the command line is wrong.")]
 pub struct LintArguments {
     #[command(flatten)]
     program: ProgramArguments,

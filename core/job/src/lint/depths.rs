@@ -24,6 +24,12 @@ const MOST_PLACES: f64 = 4096.0;
 /// A rapid may end so much below what was cut, mm: the decimals of an inch program.
 const SLACK: f64 = 0.05;
 
+/// A cut clears so much to each side, mm: half of a small cutter.
+const CLEARED: f64 = 6.0;
+
+/// Places of a rapid from cut to cut that are looked at.
+const LOOKS: usize = 16;
+
 /// Directions of the tool are one if they differ by less than half of a part of so many.
 const DIRECTIONS: f64 = 1000.0;
 
@@ -129,17 +135,24 @@ impl CutDepths {
             return found;
         }
         let cut = self.cut.take();
-        let judged = motion.kind == MotionKind::Rapid && !motion.hole && !motion.machine;
-        if !judged || self.strange != 0 {
-            return found;
-        }
         let linear = machine.axes.iter().enumerate().filter(|(_, axis)| !axis.joint.rotary);
         let linear: u32 = linear.map(|(place, _)| 1 << place).sum();
-        let way = strange == 0 && motion.led & linear == linear;
+        let judged = motion.kind == MotionKind::Rapid && !motion.hole && !motion.machine;
+        if !judged || self.strange & linear != 0 {
+            return found;
+        }
+        let way = strange & linear == 0 && motion.led & linear == linear;
         if let Some(heights) = self.heights_of(motion, false) {
             self.suspect = heights.suspect(motion, way, cut.is_some());
         }
         found
+    }
+
+    /// A block was not understood: where the tool stands is not known.
+    pub fn miss(&mut self) {
+        self.suspect = None;
+        self.cut = None;
+        self.strange = u32::MAX;
     }
 
     /// The program is over.
@@ -216,13 +229,15 @@ impl Heights {
         }
     }
 
-    /// How low it was cut about a place so far.
-    fn low(&self, [x, y]: [i64; 2]) -> f64 {
-        let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [x + i, y + j]));
-        around
-            .filter_map(|key| self.cells.get(&key))
-            .map(|cell| cell.low)
-            .fold(f64::INFINITY, f64::min)
+    /// Nothing was cut about a place so far that is as low.
+    fn is_uncut(&self, flat: [f64; 2], height: f64) -> bool {
+        let [x, y] = self.key(flat);
+        let reach = libm::ceil(CLEARED / self.cell) as i64;
+        let mut rows = x - reach..=x + reach;
+        rows.all(|x| {
+            let mut row = self.cells.range([x, y - reach]..=[x, y + reach]);
+            row.all(|(_, cell)| cell.low > height + SLACK)
+        })
     }
 
     /// A place lies inside of all that is cut, and not on its border: from there tools come in beside the part.
@@ -241,28 +256,29 @@ impl Heights {
         let rises = (end - motion.from.pose.tip).dot(&axis);
         let places: Vec<_> = self.places(motion).collect();
         let looked = if way { &places[..] } else { &places[places.len() - 1..] };
-        let (mut below, mut uncut): (f64, bool) = (0.0, false);
+        let is_deep =
+            |flat: [f64; 2], height: f64| self.is_inside(flat) && self.is_uncut(flat, height);
+        let mut below: f64 = 0.0;
         for (flat, height) in looked {
-            let key = self.key(*flat);
-            if !self.is_inside(*flat) || self.low(key) <= height + SLACK {
-                continue;
-            }
-            uncut = true;
-            if let Some(cell) = self.cells.get(&key).filter(|cell| cell.top.is_finite()) {
-                below = below.max(cell.top - height);
+            let top = self.cells.get(&self.key(*flat)).map_or(f64::NEG_INFINITY, |cell| cell.top);
+            // A cell is steep where what it has of the path is.
+            if top - height > below.max(self.cell) && is_deep(*flat, *height) {
+                below = top - height;
             }
         }
         let line = motion.line;
-        // A cell is steep where what it has of the path is.
-        if below > self.cell.max(FINEST) {
+        if below > 0.0 {
             return Some(Suspect { line, below, until: None });
         }
-        let plunges = rises < -SLACK && {
-            let (flat, height) = places[places.len() - 1];
-            self.is_inside(flat) && self.low(self.key(flat)) > height + SLACK
+        let some = looked.iter().rev().step_by(looked.len().div_ceil(LOOKS));
+        let level = match rises < -SLACK {
+            true => some.take(1).any(|(flat, height)| is_deep(*flat, *height)),
+            false => {
+                let mut some = some;
+                cut && rises < SLACK && some.any(|(flat, height)| is_deep(*flat, *height))
+            }
         };
-        let crosses = cut && way && uncut && rises < SLACK;
-        (plunges || crosses).then_some(Suspect { line, below: 0.0, until: Some((end, axis)) })
+        level.then_some(Suspect { line, below: 0.0, until: Some((end, axis)) })
     }
 }
 

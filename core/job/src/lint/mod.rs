@@ -19,7 +19,7 @@ use post_readback::interpret::ReadReport;
 use post_readback::{BlockEffect, MOST_FAULTS, ProgramRun};
 
 use crate::cl_facts::ClFacts;
-use crate::clearance;
+use crate::clearance::{self, PairRow};
 use crate::failure::Failure;
 use crate::files::FileFault;
 use crate::nc_program::{self, NcControl, ProgramText};
@@ -71,21 +71,34 @@ pub fn look_over<'m>(
 ) -> Result<LintedProgram<'m>, Failure> {
     let machine = &control.machine;
     let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
-    let proven = clearance::is_described(machine);
-    let depths = match machine.stock.is_some() {
+    let clear = match clearance::is_described(machine) {
+        true => {
+            let text = Box::new(&mut text);
+            Some(clearance::prove(control, name, text, &ClFacts::default(), None)?)
+        }
+        false => None,
+    };
+    // What no two bodies tell is not known, and no fault of the program.
+    let clear = clear.filter(|clear| !clear.pairs.is_empty());
+    let stock = |row: &PairRow| row.names.iter().any(|name| name == "stock");
+    let depths = match clear.as_ref().is_some_and(|clear| clear.pairs.iter().any(stock)) {
         // Bodies tell it better.
         true => None,
         false => {
             let mut depths = CutDepths::default();
-            run(control, name, &mut text, |done| depths.gather(done))?;
             text.rewind().map_err(unreadable)?;
+            run(control, name, &mut text, |done| done.map_or((), |done| depths.gather(done)))?;
             Some(depths)
         }
     };
+    text.rewind().map_err(unreadable)?;
     let mut watch = LintWatch::new(control, depths);
     let mut beyond = BeyondTravel::new(machine);
     let mut survey = ProgramSurvey::new(machine);
     let ran = run(control, name, &mut text, |done| {
+        let Some(done) = done else {
+            return watch.miss();
+        };
         watch.take(done);
         beyond.take(machine, done);
         survey.take(done);
@@ -101,10 +114,7 @@ pub fn look_over<'m>(
     found.extend(beyond.findings(name));
     found.extend(beyond.part_place(machine, name));
     found.extend(watch.finish(name));
-    if proven {
-        text.rewind().map_err(unreadable)?;
-        let clear =
-            clearance::prove(control, name, Box::new(&mut text), &ClFacts::default(), None)?;
+    if let Some(clear) = clear {
         // What cannot be read of it was told.
         let told = found.len();
         let news = clear.findings.into_iter().filter(|finding| !found[..told].contains(finding));
@@ -115,7 +125,7 @@ pub fn look_over<'m>(
         let mut codes = ignored.iter().chain(&machine.lint_ignored);
         codes.any(|code| code == finding.code)
     };
-    let (left_out, mut findings): (Vec<_>, Vec<_>) = found.into_iter().partition(is_ignored);
+    let (left_out, findings): (Vec<_>, Vec<_>) = found.into_iter().partition(is_ignored);
     let mut counts: Vec<(&'static str, u64)> = Vec::new();
     for finding in left_out {
         match counts.iter_mut().find(|(code, _)| *code == finding.code) {
@@ -123,10 +133,32 @@ pub fn look_over<'m>(
             None => counts.push((finding.code, 1)),
         }
     }
+    let mut findings = told_once(findings);
     findings.sort_by_key(|finding| finding.place.as_ref().map_or(0, |place| place.line));
     text.rewind().map_err(unreadable)?;
     show_lines(&mut findings, name, &mut text).map_err(unreadable)?;
     Ok(LintedProgram { findings, ignored: counts, survey, report })
+}
+
+/// The findings, those that say the same as one that names the first of them.
+fn told_once(findings: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut once: Vec<(Diagnostic, u64)> = Vec::new();
+    for finding in findings {
+        let same = |(known, _): &&mut (Diagnostic, u64)| {
+            known.code == finding.code && known.message == finding.message
+        };
+        match once.iter_mut().find(same) {
+            Some((_, count)) => *count += 1,
+            None => once.push((finding, 1)),
+        }
+    }
+    let told = once.into_iter().map(|(mut finding, count)| {
+        if count > 1 {
+            finding.message.push_str(&format!("; so in {count} blocks"));
+        }
+        finding
+    });
+    told.collect()
 }
 
 /// A program that was run to its end.
@@ -138,16 +170,21 @@ struct RanProgram {
     last_line: Option<u64>,
 }
 
-/// Runs the program `name` from its beginning, past what cannot be understood; `take` is told what it does.
+/// Runs the program `name` from its beginning, past what cannot be understood; `take` is told what it does, and nothing of
+/// a block that is not understood.
 fn run(
     control: &NcControl,
     name: &str,
     text: &mut ProgramText<'_>,
-    mut take: impl FnMut(&BlockEffect),
+    mut take: impl FnMut(Option<&BlockEffect>),
 ) -> Result<RanProgram, Failure> {
     let mut run = ProgramRun::new(control.program_with_rapids(name, Box::new(text))?);
+    let mut missed = 0;
     while let Some(done) = run.block() {
-        done.iter().for_each(&mut take);
+        done.iter().for_each(|done| take(Some(done)));
+        if std::mem::replace(&mut missed, run.faults().len()) < run.faults().len() {
+            take(None);
+        }
     }
     let program = run.program().program();
     let (report, (line, _)) = (program.report().clone(), program.stand());

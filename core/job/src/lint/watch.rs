@@ -113,6 +113,10 @@ pub(super) struct LintWatch<'m> {
     registers: Vec<RegisterUse>,
     /// Speeds that the spindle was asked for, by their digits.
     speeds: BTreeMap<u64, bool>,
+    /// Some block was not understood: it may have said a feed.
+    missed: bool,
+    /// The deepest rapid, and how many there are.
+    deepest: Option<(DeepRapid, u64)>,
 }
 
 impl<'m> LintWatch<'m> {
@@ -128,6 +132,8 @@ impl<'m> LintWatch<'m> {
             cooled: false,
             registers: Vec::new(),
             speeds: BTreeMap::new(),
+            missed: false,
+            deepest: None,
         }
     }
 
@@ -139,6 +145,12 @@ impl<'m> LintWatch<'m> {
             Some(known) => known.count += 1,
             None => self.broken.push(Broken { rule, line, message, count: 1 }),
         }
+    }
+
+    /// A block was not understood: of what it would have changed nothing is told.
+    pub fn miss(&mut self) {
+        self.missed = true;
+        self.depths.iter_mut().for_each(CutDepths::miss);
     }
 
     /// Takes what the program did next.
@@ -170,6 +182,7 @@ impl<'m> LintWatch<'m> {
         }
         if motion.kind == MotionKind::Feed
             && motion.minutes <= 0.0
+            && !self.missed
             && motion.from.joints != motion.to.joints
         {
             self.tell(Rule::NoFeed, motion.line, "cuts without a feed: F is missing, or 0");
@@ -180,7 +193,18 @@ impl<'m> LintWatch<'m> {
     }
 
     fn deep_rapid(&mut self, deep: Option<DeepRapid>) {
-        let Some(DeepRapid { line, below }) = deep else {
+        let Some(deep) = deep else {
+            return;
+        };
+        let (known, count) = self.deepest.get_or_insert((deep, 0));
+        *count += 1;
+        if deep.below > known.below {
+            *known = deep;
+        }
+    }
+
+    fn tell_rapids(&mut self) {
+        let Some((DeepRapid { line, below }, count)) = self.deepest else {
             return;
         };
         let message = match below > 0.0 {
@@ -188,10 +212,12 @@ impl<'m> LintWatch<'m> {
                 "a rapid goes {} mm below where cuts come down at feed, and nothing was cut there before",
                 number(below, 3)
             ),
-            false => "a rapid goes to the depth of the cut behind it where nothing was cut before"
-                .to_owned(),
+            false => {
+                "a rapid goes to the depth of the cut that follows, where nothing was cut before"
+                    .to_owned()
+            }
         };
-        self.tell(Rule::Rapid, line, message);
+        self.broken.push(Broken { rule: Rule::Rapid, line, message, count });
     }
 
     /// Whether the length of the tool is in force as it comes down, and whose it is as it cuts.
@@ -334,6 +360,7 @@ impl<'m> LintWatch<'m> {
     pub fn finish(mut self, name: &str) -> Vec<Diagnostic> {
         let deep = self.depths.as_mut().and_then(CutDepths::finish);
         self.deep_rapid(deep);
+        self.tell_rapids();
         self.tell_registers();
         let told = self.broken.iter().map(|Broken { rule, line, message, count }| {
             let message = match count {

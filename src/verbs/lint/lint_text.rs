@@ -13,7 +13,10 @@ pub fn text(machine: &Machine, name: &str, linted: &LintedProgram<'_>) -> String
     rows.row("machine", format_args!("{} ({})", machine.name, machine.control.dialect));
     let [rapids, feeds, threads] = linted.survey.motions;
     rows.row("motions", format_args!("{rapids} rapid, {} at feed", feeds + threads));
-    rows.row("time", format_args!("{}, at the stated feeds", clock(linted.seconds())));
+    rows.row("time at the stated feeds", clock(linted.seconds()));
+    if let Some(predicted) = linted.predicted {
+        rows.row("time as predicted", clock(predicted));
+    }
     let count = |severity| {
         let findings = linted.findings.iter();
         findings.filter(|finding| finding.severity == severity).count()

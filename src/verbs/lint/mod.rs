@@ -11,6 +11,7 @@ use post_job::files::{self, AtomicFile, PathArg, Role};
 use post_job::lint::{self, CodeText, LintSummary};
 use post_job::nc_program::{NcControl, ProgramFile};
 use post_job::plugin_finder;
+use post_job::predict::cycle_time;
 use post_job::session::Session;
 use post_machine::diagnostic::{Diagnostic, Severity, nearest};
 
@@ -89,7 +90,8 @@ pub fn run(session: &Session, arguments: &LintArguments) -> Result<(), Failure> 
     for program in &programs {
         let name = &program.name;
         let source = Box::new(program.text()?);
-        let linted = lint::look_over(&control, &finder, name, source, &arguments.ignore)?;
+        let mut linted = lint::look_over(&control, &finder, name, source, &arguments.ignore)?;
+        linted.predicted = cycle_time(&control, name, Box::new(program.text()?))?;
         wrong |= linted.is_wrong(arguments.strict);
         if !text.is_empty() {
             text.push('\n');

@@ -43,6 +43,8 @@ pub struct LintedProgram<'m> {
     pub survey: ProgramSurvey<'m>,
     /// What was read.
     pub report: ReadReport,
+    /// How long it takes, s, where that was predicted.
+    pub predicted: Option<f64>,
 }
 
 impl LintedProgram<'_> {
@@ -137,7 +139,7 @@ pub fn look_over<'m>(
     findings.sort_by_key(|finding| finding.place.as_ref().map_or(0, |place| place.line));
     text.rewind().map_err(unreadable)?;
     show_lines(&mut findings, name, &mut text).map_err(unreadable)?;
-    Ok(LintedProgram { findings, ignored: counts, survey, report })
+    Ok(LintedProgram { findings, ignored: counts, survey, report, predicted: None })
 }
 
 /// The findings, those that say the same as one that names the first of them.

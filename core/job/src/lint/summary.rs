@@ -16,6 +16,9 @@ pub struct LintSummary {
     pub blocks: u64,
     /// Time of the motions at the feeds that the program states, rapids at the largest feeds of the axes, and waits, s.
     pub time_s: f64,
+    /// How long it takes, s; none where the machine file does not say how fast the axes get up to speed, or a block is not
+    /// understood.
+    pub predicted_s: Option<f64>,
     /// What is wrong, and what may be.
     pub findings: Vec<FindingSummary>,
     /// How many findings are not told, by their codes.
@@ -45,6 +48,7 @@ impl LintSummary {
             machine: machine.to_owned(),
             blocks: linted.report.blocks,
             time_s: linted.seconds(),
+            predicted_s: linted.predicted,
             findings: linted
                 .findings
                 .iter()

@@ -1,6 +1,7 @@
 //! What a program does on the machine before it is run there: set-points, servos, contour error.
 
 mod cl_path;
+mod cycle_time;
 mod feeds;
 mod found;
 pub mod measured;
@@ -17,6 +18,7 @@ mod text;
 mod times;
 mod trajectory;
 
+pub use cycle_time::cycle_time;
 pub use prediction::Prediction;
 pub use program::{MeasuredRequest, PredictRequest, PredictedProgram, predict_program};
 pub use run::{PredictReference, PredictWatch, Predicted, PredictionSetup, predict};

@@ -187,9 +187,13 @@ impl<'m> LintWatch<'m> {
         {
             self.tell(Rule::NoFeed, motion.line, "cuts without a feed: F is missing, or 0");
         }
-        self.spindle(motion);
-        self.coolant(motion);
         self.arc(motion);
+        // Up and away it cuts no more than before.
+        let way = motion.to.pose.tip - motion.from.pose.tip;
+        if way.dot(&motion.to.pose.axis) <= SHORT {
+            self.spindle(motion);
+            self.coolant(motion);
+        }
     }
 
     fn deep_rapid(&mut self, deep: Option<DeepRapid>) {
@@ -232,7 +236,8 @@ impl<'m> LintWatch<'m> {
         }
         let cuts = motion.kind != MotionKind::Rapid && !motion.fast;
         let way = motion.to.pose.tip - motion.from.pose.tip;
-        if !cuts && way.dot(&motion.to.pose.axis) > -SHORT {
+        // Where the tool turns its tip goes along, whatever its length is taken to be.
+        if !cuts && (motion.turns() || way.dot(&motion.to.pose.axis) > -SHORT) {
             return;
         }
         if std::mem::take(&mut self.new_tool) && !stated {

@@ -17,6 +17,16 @@ use super::orientation::{angle, angle_about};
 /// A joint that turns by more from one pose to the next, radians, has perhaps gone over to another solution.
 const FAR: f64 = 0.35;
 
+/// Joints to spare stand still without more ado where no other goes farther from one pose to the next, radians. Close to a
+/// fold (the others cannot go on one way) they go far for little.
+const LITTLE: f64 = 0.05;
+
+/// Beyond [`LITTLE`] joints to spare give way where all go less than this share of what the others would go.
+const WORTH: f64 = 0.5;
+
+/// mm of a joint that slides count as a radian.
+const ARM: f64 = 1000.0;
+
 /// Joints of `free` that stand while the others reach any pose: the rotary one nearest to the tool, if that turns, then
 /// those farthest from it. In the order of the chain.
 pub(super) fn surplus(chain: &Chain, free: &[usize], held: &Joints) -> Vec<usize> {
@@ -197,8 +207,8 @@ impl Solver {
         }
     }
 
-    /// The solution next to `from`: with the surplus joints where they stand, or else the one over which all joints move
-    /// least.
+    /// The solution next to `from`: with the surplus joints where they stand as long as the others go little so, or else
+    /// the one over which all joints move least.
     pub(super) fn search_surplus(
         &self,
         pose: &Pose,
@@ -208,15 +218,19 @@ impl Solver {
     ) -> Result<Joints, Unreachable> {
         let all = *left;
         let held = self.holding_within(pose, from, self.surplus(), tolerance, left);
-        if held.as_ref().is_ok_and(|held| !self.turns_far(from, held)) || self.surplus().is_empty()
-        {
+        let way = held.as_ref().map_or(f64::INFINITY, |held| self.largest_way(from, held));
+        if way <= LITTLE || self.surplus().is_empty() {
             return held;
         }
         let mut again = numeric::STEPS.min(all);
         let freed = self.holding_within(pose, from, &[], tolerance, &mut again);
         match (held, freed) {
             (Ok(held), Ok(freed)) => {
-                let nearer = self.largest_turn(from, &freed) < self.largest_turn(from, &held);
+                let turn = self.largest_turn(from, &held);
+                let nearer = match turn > FAR {
+                    true => self.largest_turn(from, &freed) < turn,
+                    false => self.largest_way(from, &freed) < WORTH * way,
+                };
                 Ok(if nearer { freed } else { held })
             }
             (Err(_), freed) => freed,
@@ -224,9 +238,13 @@ impl Solver {
         }
     }
 
-    /// Has perhaps a joint gone over to another solution from one set of axis values to the next?
-    pub fn turns_far(&self, from: &Joints, to: &Joints) -> bool {
-        self.largest_turn(from, to) > FAR
+    /// The largest way of a joint, radians, mm of one that slides on its arm.
+    fn largest_way(&self, from: &Joints, to: &Joints) -> f64 {
+        let joints = self.chain.joints().iter().enumerate();
+        let unit = |rotary: bool| if rotary { 1.0 } else { ARM };
+        let ways =
+            joints.map(|(place, joint)| libm::fabs(to[place] - from[place]) / unit(joint.rotary));
+        ways.fold(0.0, f64::max)
     }
 
     /// The largest turn of a joint, radians.

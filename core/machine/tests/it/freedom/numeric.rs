@@ -97,8 +97,9 @@ fn chains_without_a_closed_form_are_solved_and_verified() {
         all_near += near;
         all_far += far;
     }
-    // Of one kind there are too few in a run: one or two come out far off by chance, where joints to spare stand still.
-    assert!(all_far * 100 <= all_near * 3, "{all_far} of {all_near}");
+    println!("of all: {all_far} far off of {all_near}");
+    // Of one kind there are too few in a run.
+    assert!(all_far * 100 <= all_near, "{all_far} of {all_near}");
 }
 
 /// Along a walk of six rotary axes under a tool frame, the search that begins at the last solution follows the values

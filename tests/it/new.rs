@@ -22,6 +22,7 @@ const CLASSES: &[&str] = &[
     "nutating-head",
     "lathe-xzc",
     "mill-turn",
+    "robot",
 ];
 
 fn folder() -> TempDir {
@@ -51,6 +52,7 @@ fn every_class_passes_the_check_and_makes_a_program() {
         let kind =
             kind.replace("nutating-head", "nutating").replace("table-table-nutating", "nutating");
         let kind = kind.replace("lathe-xzc", "rotary table C").replace("mill-turn", "head-table");
+        let kind = kind.replace("robot", "six-axis");
         let kind = ["-ac", "-bc", "-ba"].iter().fold(kind, |kind, end| kind.replace(end, ""));
         assert!(check.out.contains(&kind), "{kind} is not in:\n{}", check.out);
         fs::write(folder.path().join("part.cls"), JOB).unwrap();

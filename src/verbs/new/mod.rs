@@ -17,7 +17,7 @@ use post_job::failure::Failure;
 use post_job::files::{self, Role};
 use post_job::session::Session;
 use post_job::{self as job, plugin_finder};
-use template::Class;
+use template::{ARM_LENGTHS, Class, USUAL_ARM};
 
 const MACHINE: Role = Role { what: "machine file", remedy: "give it another name" };
 
@@ -90,7 +90,12 @@ pub struct NewArguments {
     #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
     tilt: Option<f64>,
 
-    /// Largest deviation of the tip in a cut, mm. [default: 0.005]
+    /// Lengths of a robot's arm, mm: a1,a2,b,c1,c2,c3,c4 as they are published for arms with a parallel shoulder and a
+    /// spherical wrist (OPW). [default: 150,-115,0,445,700,795,85]
+    #[arg(long, value_name = "A1,A2,B,C1,C2,C3,C4", allow_hyphen_values = true, value_parser = arm)]
+    arm: Option<ArmLengths>,
+
+    /// Largest deviation of the tip in a cut, mm. [default: 0.005, of a robot 0.05]
     #[arg(long, value_name = "MM", value_parser = finite)]
     tolerance: Option<f64>,
 
@@ -98,6 +103,10 @@ pub struct NewArguments {
     #[arg(long)]
     force: bool,
 }
+
+/// Lengths of a robot's arm, mm.
+#[derive(Clone, Copy, Debug)]
+pub struct ArmLengths([f64; ARM_LENGTHS.len()]);
 
 /// A value for one axis.
 #[derive(Clone, Debug)]
@@ -126,6 +135,8 @@ pub struct Choices {
     pub gauge: f64,
     pub pivot: f64,
     pub tilt: f64,
+    /// [`ARM_LENGTHS`], mm.
+    pub arm: [f64; ARM_LENGTHS.len()],
     pub tolerance: f64,
 }
 
@@ -219,18 +230,20 @@ fn choices(arguments: &NewArguments, path: &Path) -> Result<Choices, Failure> {
         gauge: arguments.gauge.unwrap_or(500.0),
         pivot: arguments.pivot.unwrap_or(250.0),
         tilt: arguments.tilt.unwrap_or(50.0),
-        tolerance: arguments.tolerance.unwrap_or(0.005),
+        arm: arguments.arm.map_or(USUAL_ARM, |ArmLengths(arm)| arm),
+        tolerance: 0.0,
     };
     if arguments.class.is_none() {
         questions::ask(arguments, &mut choices)?;
     }
+    choices.tolerance = arguments.tolerance.unwrap_or(choices.class.usual_tolerance());
     Ok(choices)
 }
 
 /// Flags that nothing in the file of the class stands on.
 fn useless_flags(arguments: &NewArguments, class: Class) -> Vec<Diagnostic> {
     type FlagTest = fn(Class) -> bool;
-    let flags: [(&str, bool, FlagTest, &str, Option<&str>); 3] = [
+    let flags: [(&str, bool, FlagTest, &str, Option<&str>); 5] = [
         (
             "--pivot",
             arguments.pivot.is_some(),
@@ -246,6 +259,8 @@ fn useless_flags(arguments: &NewArguments, class: Class) -> Vec<Diagnostic> {
             class.axis_at("tilt"),
         ),
         ("--tcp", arguments.tcp.is_some(), Class::keeps_tips, "control that keeps the tip", None),
+        ("--arm", arguments.arm.is_some(), Class::has_arm, "arm of a robot", None),
+        ("--gauge", arguments.gauge.is_some(), Class::has_gauge, "gauge line over a table", None),
     ];
     let mut faults = Vec::new();
     for (flag, _, has, part, axis) in flags.into_iter().filter(|(_, given, ..)| *given) {
@@ -336,6 +351,16 @@ pub fn dialect(text: &str) -> Result<String, String> {
         return Err("the name of a dialect has letters and digits alone".to_owned());
     }
     Ok(text.to_ascii_lowercase())
+}
+
+/// `150,-115,0,445,700,795,85`.
+fn arm(text: &str) -> Result<ArmLengths, String> {
+    let lengths: Vec<f64> =
+        text.split(',').map(|length| finite(length.trim())).collect::<Result<_, _>>()?;
+    let count = lengths.len();
+    let names = ARM_LENGTHS.map(|(name, _)| name).join(",");
+    let lengths = lengths.try_into();
+    lengths.map(ArmLengths).map_err(|_| format!("{count} lengths, and {names} are needed"))
 }
 
 fn feed(text: &str) -> Result<AxisSetting<f64>, String> {

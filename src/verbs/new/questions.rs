@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use post_machine::description::Tcp;
 use post_machine::diagnostic::Diagnostic;
 
-use super::template::Class;
+use super::template::{ARM_LENGTHS, Class};
 use super::{AxisSetting, Choices, NewArguments, dialect, range};
 use crate::flag_words::TcpWord;
 use post_cli::arguments::flag_values::finite;
@@ -56,7 +56,12 @@ pub fn ask(arguments: &NewArguments, choices: &mut Choices) -> Result<(), Failur
         )?;
         choices.tcp = said.unwrap_or(choices.tcp);
     }
-    if arguments.gauge.is_none() {
+    if choices.class.has_arm() && arguments.arm.is_none() {
+        for ((name, what), length_of_arm) in ARM_LENGTHS.iter().zip(&mut choices.arm) {
+            *length_of_arm = length(&format!("{name}: {what}, mm"), *length_of_arm)?;
+        }
+    }
+    if choices.class.has_gauge() && arguments.gauge.is_none() {
         choices.gauge =
             length("gauge line over the table's face, all axes at zero, mm", choices.gauge)?;
     }

@@ -37,7 +37,23 @@ pub enum Class {
     LatheXzc,
     /// A lathe with a milling head: X, Y, Z, the work spindle C and B.
     MillTurn,
+    /// A robot's arm with parallel shoulder and spherical wrist: A B C U V W are its axes 1 to 6.
+    Robot,
 }
+
+/// The seven lengths of an arm, as they are published for it, mm: their names and what they are, the arm stretched straight up.
+pub const ARM_LENGTHS: [(&str, &str); 7] = [
+    ("a1", "line of the second axis out from that of the first"),
+    ("a2", "line of the fourth axis out from that of the third; behind it negative"),
+    ("b", "wrist to the left of the plane of the shoulder"),
+    ("c1", "line of the second axis over the foot"),
+    ("c2", "line of the third axis over that of the second"),
+    ("c3", "middle of the wrist over the line of the third axis"),
+    ("c4", "flange over the middle of the wrist"),
+];
+
+/// An arm of two metres, published for an ABB IRB 2600, mm.
+pub const USUAL_ARM: [f64; 7] = [150.0, -115.0, 0.0, 445.0, 700.0, 795.0, 85.0];
 
 /// A rotary axis of a class.
 struct Rotary {
@@ -115,6 +131,31 @@ const FORK_C: Rotary = Rotary {
     measure: "any point on its line, X and Y: where it misses the spindle, say by how much",
 };
 
+const fn arm_joint(
+    name: &'static str,
+    direction: &'static str,
+    point: &'static str,
+    travel: [f64; 2],
+) -> Rotary {
+    Rotary {
+        name,
+        direction,
+        point,
+        travel: Some(travel),
+        measure: "any point on its line, the arm stretched straight up",
+    }
+}
+
+/// Travels that are common among arms.
+const ARM: [Rotary; 6] = [
+    arm_joint("A", "[0, 0, 1]", "[0, 0, 0]", [-180.0, 180.0]),
+    arm_joint("B", "[0, 1, 0]", "[\"a1\", 0, \"c1\"]", [-95.0, 155.0]),
+    arm_joint("C", "[0, 1, 0]", "[\"a1\", 0, \"c1 + c2\"]", [-90.0, 165.0]),
+    arm_joint("U", "[0, 0, 1]", "[\"a1 + a2\", \"b\", \"c1 + c2 + c3\"]", [-400.0, 400.0]),
+    arm_joint("V", "[0, 1, 0]", "[\"a1 + a2\", \"b\", \"c1 + c2 + c3\"]", [-120.0, 120.0]),
+    arm_joint("W", "[0, 0, 1]", "[\"a1 + a2\", \"b\", \"c1 + c2 + c3\"]", [-400.0, 400.0]),
+];
+
 impl Class {
     fn chain(self) -> &'static str {
         match self {
@@ -129,6 +170,7 @@ impl Class {
             Self::HeadTableBa => "[w A' b X Y Z B (S) t]",
             Self::LatheXzc => "[w C' b Z X (S) t]",
             Self::MillTurn => "[w C' b Z X Y B (S) t]",
+            Self::Robot => "[w b A B C U V W (S) t]",
         }
     }
 
@@ -140,15 +182,17 @@ impl Class {
     fn linear(self) -> &'static [&'static str] {
         match self {
             Self::LatheXzc => &["X", "Z"],
+            Self::Robot => &[],
             _ => &["X", "Y", "Z"],
         }
     }
 
     /// Where the gauge point stands with every axis at zero; parameters may stand in it.
     fn gauge_point(self) -> String {
-        match self.is_lathe() {
-            true => format!("[{LATHE_X}, 0, \"gauge\"]"),
-            false => "[0, 0, \"gauge\"]".to_owned(),
+        match self {
+            Self::LatheXzc | Self::MillTurn => format!("[{LATHE_X}, 0, \"gauge\"]"),
+            Self::Robot => "[\"a1 + a2\", \"b\", \"c1 + c2 + c3 + c4\"]".to_owned(),
+            _ => "[0, 0, \"gauge\"]".to_owned(),
         }
     }
 
@@ -159,6 +203,10 @@ impl Class {
                 ["[0, 0, 1]", "along the work spindle; across it [1, 0, 0] and length_axis = \"X\""]
             }
             Self::MillTurn => ["[1, 0, 0]", "from the tip to the holder, B as it shows 90"],
+            Self::Robot => [
+                "[0, 0, -1]",
+                "from the tip to the holder: here the spindle goes on along the flange",
+            ],
             _ => ["[0, 0, 1]", "from the tip to the holder"],
         }
     }
@@ -185,6 +233,7 @@ impl Class {
             Self::NutatingHead => vec![TABLE_C, swivel("B", "[0, 1, 1]", [0.0, 180.0])],
             Self::LatheXzc => vec![WORK_SPINDLE],
             Self::MillTurn => vec![WORK_SPINDLE, MILLING_HEAD],
+            Self::Robot => ARM.into(),
         }
     }
 
@@ -203,12 +252,27 @@ impl Class {
 
     /// Its control may keep the tip, which takes words X, Y and Z.
     pub fn keeps_tips(self) -> bool {
-        self.turns() && self != Self::LatheXzc
+        self.turns() && !matches!(self, Self::LatheXzc | Self::Robot)
     }
 
     /// Who keeps the tip, if nobody says so. The tool of a mill-turn is drawn across the part, and its length is put along Z.
     pub fn usual_tcp(self) -> Tcp {
         if self == Self::MillTurn { Tcp::Control } else { Tcp::Post }
+    }
+
+    /// The lengths of an arm stand in its file.
+    pub fn has_arm(self) -> bool {
+        self == Self::Robot
+    }
+
+    /// The height `gauge` stands in its file.
+    pub fn has_gauge(self) -> bool {
+        self != Self::Robot
+    }
+
+    /// mm, the tip in cuts, if nobody says another.
+    pub fn usual_tolerance(self) -> f64 {
+        if self == Self::Robot { 0.05 } else { 0.005 }
     }
 
     /// The distance `gauge + pivot` stands in its file.
@@ -271,6 +335,11 @@ pub fn write(choices: &Choices) -> String {
     line("", "");
     line("[accuracy]", "");
     line(&format!("tolerance = {}", choices.tolerance), "mm, the tip in cuts");
+    if choices.class == Class::Robot {
+        line("", "");
+        line("[solution]", "");
+        line("start = { C = 90, V = 90 }", "where it begins: the forearm level, the tool down");
+    }
     text
 }
 
@@ -283,6 +352,33 @@ fn head(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         "",
     );
     line("#", "");
+    if choices.class == Class::Robot {
+        line(
+            "# Positions are in mm in the machine frame, with the arm stretched straight up; here its origin is the foot of the",
+            "",
+        );
+        line(
+            "# arm, on the line of the first axis. `zero` says what the control shows of an axis that stands so, `reversed` that",
+            "",
+        );
+        line(
+            "# it counts the other way. `post check` prints what each sign means, `post check --commission` tries them.",
+            "",
+        );
+    } else {
+        frame_of_a_table(line, choices);
+    }
+    line("", "");
+    line(&format!("name  = \"{title}\""), "");
+    line(
+        &format!("chain = \"{}\"", choices.class.chain()),
+        "from the workpiece w over the bed b to the tool t; ' carries the part",
+    );
+    line("", "");
+}
+
+/// What positions and directions in the file of a machine with a table are.
+fn frame_of_a_table(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     line(
         "# Positions are in mm in the machine frame, with every axis at zero; here its origin is the middle of the",
         "",
@@ -298,17 +394,13 @@ fn head(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         "# it moves the other way. `post check` prints what each sign means, `post check --commission` tries them.",
         "",
     );
-    line("", "");
-    line(&format!("name  = \"{title}\""), "");
-    line(
-        &format!("chain = \"{}\"", choices.class.chain()),
-        "from the workpiece w over the bed b to the tool t; ' carries the part",
-    );
-    line("", "");
 }
 
 /// Distances of the machine, where the part sits, and the tool.
 fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
+    if choices.class == Class::Robot {
+        return arm(line, choices);
+    }
     line("[parameters]", "");
     line(
         &format!("gauge = {}", choices.gauge),
@@ -348,6 +440,28 @@ fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     line(&format!("axis  = {axis}"), remark);
 }
 
+/// Lengths of an arm, a part within its reach, and the tool.
+fn arm(line: &mut impl FnMut(&str, &str), choices: &Choices) {
+    line("[parameters]", "");
+    for ((name, remark), length) in ARM_LENGTHS.iter().zip(choices.arm) {
+        line(&format!("{name:<2} = {length}"), remark);
+    }
+    let [a1, _, _, c1, c2, c3, _] = choices.arm;
+    let out = libm::round(libm::fabs(a1) + 0.5 * (libm::fabs(c2) + libm::fabs(c3)));
+    line("", "");
+    line("[workpiece]", "");
+    line(
+        &format!("mount = [{out}, 0, {}]", libm::round(0.5 * c1)),
+        "part origin: here before the arm; --mount for one job",
+    );
+    line("", "");
+    line("[tool]", "");
+    line(&format!("gauge = {}", choices.class.gauge_point()), "spindle nose: here on the flange");
+    let [axis, remark] = choices.class.tool_axis();
+    line(&format!("axis  = {axis}"), remark);
+    line("length_axis = \"none\"", "words are values of the axes, with the tool");
+}
+
 fn linear_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     for (name, direction, lean) in [
         ("X", "[1, 0, 0]", "20 µm/m towards Y: [1, 20e-6, 0]"),
@@ -382,6 +496,9 @@ fn rotary_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
             None => rotary.point.to_owned(),
         };
         line(&format!("point    = {point}"), rotary.measure);
+        if choices.class == Class::Robot {
+            line("zero     = 0", "what the control shows of it, the arm stretched straight up");
+        }
         if let Some(shown) = choices.class.shown_at_zero(name) {
             line(&format!("zero     = {shown}"), "shown where it stands as drawn");
         }
@@ -396,7 +513,13 @@ fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     line("", "");
     line("[control]", "");
     line(&format!("dialect = \"{}\"", choices.dialect), "");
-    if choices.class.turns() {
+    if choices.class == Class::Robot {
+        line(
+            "tcp     = \"post\"",
+            "axis positions: an arm has no X, Y and Z that a control could keep",
+        );
+        line("leave   = { along = \"tool\", distance = 30 }", "how the tool leaves the part");
+    } else if choices.class.turns() {
         line(
             &format!("tcp     = \"{}\"", choices.tcp.name()),
             "\"post\": axis positions; \"control\": the tip (G43.4, M128, …)",
@@ -408,7 +531,8 @@ fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     if choices.units == OutputUnits::Inch {
         line("units   = \"inch\"", "of the NC program; this file stays in mm");
     }
-    if let Some((below, remark)) = stands_clear(choices)
+    if choices.class.linear().contains(&"Z")
+        && let Some((below, remark)) = stands_clear(choices)
         && let Some([_, top]) = z_travel(choices)
     {
         line(&format!("retract = {{ Z = {} }}", top - below), remark);

@@ -71,6 +71,7 @@ mod report_solids;
 mod right_jobs;
 #[cfg(unix)]
 mod rights;
+mod robot_programs;
 mod robots;
 mod rotary_way;
 mod settings;

@@ -59,18 +59,22 @@ fn other_than(reads: Language, head: &str) -> Option<Language> {
         number.is_some_and(|number| number.starts_with(|next: char| next.is_ascii_digit()))
     };
     let of_letters = || lines().any(|[first, _]| numbered(first, 'G') || numbered(first, 'O'));
+    let of_joints =
+        || lines().any(|[first, _]| matches!(first, "MoveAbsJ" | "MODULE" | "PTP" | "&ACCESS"));
     let of_names = || lines().flatten().any(|word| NAMES.contains(&word));
     match reads {
         Language::Conversational if conversational => None,
         Language::Conversational if of_names() => Some(Language::Names),
         Language::Conversational => of_letters().then_some(Language::Macro),
         _ if head.contains("BEGIN PGM") => Some(Language::Conversational),
+        Language::Macro | Language::Names if of_joints() => Some(Language::Joints),
         Language::Names => {
             let titled = lines().any(|[first, _]| numbered(first, 'O'));
             (titled && !of_names()).then_some(Language::Macro)
         }
         Language::Macro => of_names().then_some(Language::Names),
         Language::Rs274 | Language::Instructions => None,
+        Language::Joints => of_letters().then_some(Language::Macro),
     }
 }
 
@@ -91,5 +95,6 @@ fn called(language: Language) -> &'static str {
         Language::Names => "a SINUMERIK program",
         Language::Conversational => "a Heidenhain conversational program",
         Language::Instructions => "a program of words and instructions, as Fagor and ISG read it",
+        Language::Joints => "a program of a robot's statements",
     }
 }

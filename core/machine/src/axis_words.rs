@@ -5,7 +5,7 @@ mod lanes;
 
 pub use lanes::WordLanes;
 use nalgebra::Vector3;
-use post_plugin::Format;
+use post_plugin::{Format, Language};
 
 use crate::description::{Machine, OutputUnits, TIP_WORDS, Tcp};
 use crate::kinematics::{Joints, MAX_AXES, Solver};
@@ -35,6 +35,8 @@ pub struct AxisWords {
     plane: Option<TiltedPlane>,
     /// What rotary words make of the values of several axes; none where each is that of one.
     coupled: Option<Box<WordMap>>,
+    /// Linear words are what the control shows of their axes, wherever the part is.
+    shown: bool,
 }
 
 /// One word.
@@ -196,6 +198,7 @@ impl AxisWords {
             zero: [0.0; MAX_AXES],
             plane: None,
             coupled: coupled.cloned().map(Box::new),
+            shown: format.language == Language::Joints,
         }
     }
 
@@ -226,10 +229,16 @@ impl AxisWords {
     }
 
     /// Takes the work offset from a solver: where the axes stand when the tip of its tool is on the part
-    /// origin and every other axis shows zero. None if the linear axes cannot bring it there.
+    /// origin and every other axis shows zero. None if the linear axes cannot bring it there. A robot has none.
     pub fn set_zero(&mut self, solver: &Solver) -> Option<()> {
-        let words = self.words();
-        self.zero = work_zero(solver, words.map(|word| (word.joint, word.reading)))?;
+        let words = self.words().map(|word| (word.joint, word.reading));
+        if self.shown {
+            let mut zero = [0.0; MAX_AXES];
+            words.for_each(|(joint, reading)| zero[joint] = -reading);
+            self.zero = zero;
+            return Some(());
+        }
+        self.zero = work_zero(solver, words)?;
         Some(())
     }
 

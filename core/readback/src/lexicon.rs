@@ -88,6 +88,8 @@ impl Lexicon {
             empty: BTreeMap::new(),
             choices: Vec::new(),
             modes: match language {
+                // They count in their own units, and have none of these modes.
+                Language::Joints => 0,
                 // Its head names the units, I the ways and R0 the path; the plane is that of the tool call.
                 Language::Conversational => {
                     ModalGroup::named(words) & ModalGroup::TiltedPlane.bit()
@@ -99,7 +101,11 @@ impl Lexicon {
             lexicon.add_sense(word, sense);
         }
         for VocabularyWord { word, meaning } in words {
-            lexicon.add(word.trim(), *meaning);
+            match language {
+                // Statements are read in capitals, however the language writes them.
+                Language::Joints => lexicon.add(&word.trim().to_ascii_uppercase(), *meaning),
+                _ => lexicon.add(word.trim(), *meaning),
+            }
         }
         lexicon
     }
@@ -342,15 +348,15 @@ fn syntax(words: &[VocabularyWord], language: Language) -> NcSyntax {
     };
     let remarks = words.iter().filter(|word| word.meaning == Meaning::Remark);
     let mut line_remarks: Vec<String> = remarks.map(|word| word.word.to_string()).collect();
-    // It ends a block of the letters' controls, and begins a remark of all others.
-    if !line_remarks.iter().any(|remark| remark == ";") {
+    // It ends a block of the letters' controls, and begins a remark of all others but robots.
+    if language != Language::Joints && !line_remarks.iter().any(|remark| remark == ";") {
         line_remarks.push(";".to_owned());
     }
     NcSyntax {
-        notation: if language == Language::Conversational {
-            Notation::Conversational
-        } else {
-            Notation::Words
+        notation: match language {
+            Language::Conversational => Notation::Conversational,
+            Language::Joints => Notation::Statements,
+            _ => Notation::Words,
         },
         line_remarks,
         enclosed_remarks: first(Meaning::RemarkOpen).zip(first(Meaning::RemarkClose)),

@@ -16,6 +16,8 @@ pub enum Notation {
     Words,
     /// Heidenhain's conversational form.
     Conversational,
+    /// Statements of robots' languages, one a line.
+    Statements,
 }
 
 /// What a reader must know of a control before it can tell words from remarks.
@@ -103,6 +105,23 @@ pub enum NcItem {
     Text(String),
     /// What leads the program elsewhere.
     Flow(Box<NcFlow>),
+    /// A statement of a robot's language.
+    Statement(Vec<NcTerm>),
+}
+
+/// A part of a statement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NcTerm {
+    /// A name in capitals, with the names of components behind points: `MOVEABSJ`, `$VEL.CP`, `HERE.ROBAX.RAX_1`.
+    Name(String),
+    /// A number with its sign.
+    Number(NcNumber),
+    /// A text in quotation marks, without them, as written.
+    Text(String),
+    /// What stands between brackets; the one that opens them.
+    Group(u8, Vec<NcTerm>),
+    /// Any other sign, its first byte: `,`, `;`, `=`; `:=` is two.
+    Sign(u8),
 }
 
 /// A letter and its value.

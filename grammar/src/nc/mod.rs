@@ -1,7 +1,7 @@
 //! NC programs: bytes of a file to blocks, nothing interpreted.
 //!
-//! Two notations: words after letters as ISO 6983 has them, with what the controls have added to it (names with `=`,
-//! calls with parentheses, expressions, labels, loops), and Heidenhain's conversational form.
+//! Three notations: words after letters as ISO 6983 has them, with what the controls have added to it (names with `=`,
+//! calls with parentheses, expressions, labels, loops), Heidenhain's conversational form, and statements of robots.
 
 mod block;
 mod conversational;
@@ -16,6 +16,7 @@ mod remarks;
 mod run;
 mod scan;
 mod search;
+mod statements;
 mod tree;
 mod words;
 

@@ -12,7 +12,7 @@ use super::layout::BlockLayouts;
 use super::lines::{NcMark, PhysicalBlockLine, ProgramLines, line_end};
 use super::run::{NcRun, NcRunRule};
 use super::search::JumpCache;
-use super::{conversational, remarks, scan, words};
+use super::{conversational, remarks, scan, statements, words};
 use crate::fault::{ReadError, SyntaxFault};
 
 /// Longest block, in bytes of the file, lines that continue it counted: no control takes a longer one.
@@ -222,6 +222,7 @@ impl<R: Read + Seek> NcReader<R> {
             taken.and_then(|()| check_depth(code)).and_then(|()| match self.syntax.notation {
                 Notation::Words => words::parse(code, text, &self.syntax, block),
                 Notation::Conversational => conversational::parse(code, text, block),
+                Notation::Statements => statements::parse(code, text, block),
             });
         read.map_err(|fault| fault.fault(text, line).into())
     }
@@ -353,6 +354,7 @@ impl BlockText {
         match syntax.notation {
             Notation::Words => words::parse(code, text, syntax, block),
             Notation::Conversational => conversational::parse(code, text, block),
+            Notation::Statements => statements::parse(code, text, block),
         }
     }
 
@@ -425,6 +427,7 @@ fn begins_program(line: &[u8], notation: Notation) -> bool {
             let behind: Vec<u8> = behind.copied().take(16).collect();
             behind.trim_ascii().to_ascii_uppercase().starts_with(b"BEGIN PGM")
         }
+        Notation::Statements => false,
     }
 }
 
@@ -447,8 +450,8 @@ fn check_depth(code: &str) -> Result<(), Unreadable> {
     let mut depth = 0_usize;
     for (at, byte) in code.bytes().enumerate() {
         match byte {
-            b'(' | b'[' => depth += 1,
-            b')' | b']' => depth = depth.saturating_sub(1),
+            b'(' | b'[' | b'{' => depth += 1,
+            b')' | b']' | b'}' => depth = depth.saturating_sub(1),
             _ => {}
         }
         if depth > DEEPEST {

@@ -15,6 +15,7 @@ pub(super) fn plain(text: &[u8], notation: Notation, block: &mut NcBlock) -> Opt
     match notation {
         Notation::Words => words(text, block),
         Notation::Conversational => conversational(text, block),
+        Notation::Statements => None,
     }
 }
 

@@ -310,6 +310,7 @@ typedef struct {
 #define POST_LANGUAGE_NAMES 2u
 #define POST_LANGUAGE_CONVERSATIONAL 3u
 #define POST_LANGUAGE_INSTRUCTIONS 4u
+#define POST_LANGUAGE_JOINTS 5u
 /* Arc in the plane of X and Y (G17). */
 #define POST_WRITES_ARC_XY 0x0000000000000001u
 /* Arc in the plane of Z and X (G18). */

@@ -169,6 +169,9 @@
 #define POST_MEANING_FEED_PER_MINUTE_ALL_AXES 193u
 #define POST_MEANING_MACHINE_COORDINATES_ON 194u
 #define POST_MEANING_MACHINE_COORDINATES_OFF 195u
+#define POST_MEANING_JOINT_MOVE 200u
+#define POST_MEANING_POSE_MOVE 201u
+#define POST_MEANING_JOINTS_NOW 202u
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");

@@ -19,6 +19,9 @@ codes! {
         Conversational = 3 "CONVERSATIONAL",
         /// Letters, `#RTCP ON`, `P1`: Fagor from the 8070 on, and ISG's kernel, whose instructions it shares.
         Instructions = 4 "INSTRUCTIONS",
+        /// `MoveAbsJ [[..],[..]],..;`, `PTP {A1 ..}`, `movej([..])`: statements of robots, which lead their joints. Words of
+        /// all axes, sliding ones too, are positions as the control shows them; there is no work offset.
+        Joints = 5 "JOINTS",
     }
 }
 

@@ -95,6 +95,7 @@
 //! [`raw`] is the contract in C, [`raw::HEADER`] its header. A library exports one constant, which is judged before any
 //! of its functions runs.
 
+mod arm;
 mod axis_names;
 mod batch;
 mod block;
@@ -119,6 +120,7 @@ mod standstill;
 mod text;
 mod vocabulary;
 
+pub use arm::{ARM_AXES, ARM_JOINTS, ArmWords, arm_axis, identifier};
 pub use axis_names::AxisNames;
 pub use batch::Batch;
 pub use block::{Axes, Block, CutLine, Group, Modal, NumberStyle};

@@ -20,6 +20,16 @@ impl VocabularyWord {
     pub const fn new(word: &'static str, meaning: Meaning) -> Self {
         VocabularyWord { word: Cow::Borrowed(word), meaning }
     }
+
+    /// The names with which `lines` of a robot's program begin, which all mean this.
+    pub fn first_of(lines: &str, meaning: Meaning) -> impl Iterator<Item = Self> {
+        let of_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+        let names = lines.lines().map(move |line| {
+            line.trim().split(|letter| !of_name(letter)).next().unwrap_or_default().to_owned()
+        });
+        let names = names.filter(|name| !name.is_empty());
+        names.map(move |name| VocabularyWord { word: Cow::Owned(name), meaning })
+    }
 }
 
 impl Meaning {
@@ -352,5 +362,11 @@ codes! {
         MachineCoordinatesOn = 194 "MACHINE_COORDINATES_ON",
         /// Positions are machine coordinates no more: `#MCS OFF`.
         MachineCoordinatesOff = 195 "MACHINE_COORDINATES_OFF",
+        /// The joints of an arm go evenly to positions: MoveAbsJ, PTP, movej.
+        JointMove = 200 "JOINT_MOVE",
+        /// The tool of an arm goes to a pose: MoveL, LIN, movel.
+        PoseMove = 201 "POSE_MOVE",
+        /// Where the joints of an arm stand: CJointT().
+        JointsNow = 202 "JOINTS_NOW",
     }
 }

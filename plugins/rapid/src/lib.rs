@@ -3,21 +3,13 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_plugin::{
-    Capabilities, Coolant, Dialect, Event, Feed, Format, OptionSpec, Setup, Spindle, SpindleSense,
-    Units, ascii, export_dialect, fixed,
+    ARM_AXES, ARM_JOINTS, ArmWords, Capabilities, Coolant, Dialect, Event, Feed, Format, Language,
+    Meaning, OptionSpec, Setup, Spindle, SpindleSense, Units, VocabularyWord, ascii,
+    export_dialect, fixed, identifier,
 };
 
-/// Axes of the arm, and of what stands beside it.
-const AXES: usize = 6;
-
-/// Where the value of an axis word stands in a `jointtarget`.
-type Place = usize;
-
-/// Names of axes, by their places: those of the arm, then those beside it.
-const NAMES: [&str; 9] = ["A", "B", "C", "U", "V", "W", "X", "Y", "Z"];
-
 /// Components of a `jointtarget`, in that order.
-const COMPONENTS: [&str; 2 * AXES] = [
+const COMPONENTS: [&str; ARM_AXES] = [
     "robax.rax_1",
     "robax.rax_2",
     "robax.rax_3",
@@ -40,7 +32,7 @@ const VELOCITY_DECIMALS: u8 = 5;
 const NAME: usize = 24;
 
 struct Rapid {
-    places: Vec<Place>,
+    axes: ArmWords,
     decimals: Vec<u8>,
     depth: Vec<bool>,
     rotary: Vec<bool>,
@@ -72,17 +64,31 @@ const OPTIONS: &[OptionSpec] = &[
     OptionSpec::lines("optional_stop", "OptionalStop;", "Lines of an optional stop."),
 ];
 
-/// A name that RAPID takes: letters, digits and underlines, a letter first.
-fn identifier(name: &str) -> String {
-    let taken = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    let name: String = ascii(name).chars().map(taken).take(NAME).collect();
-    if name.starts_with(|c: char| c.is_ascii_alphabetic()) { name } else { format!("p{name}") }
-}
-
-/// Where an axis stands in a `jointtarget`.
-fn place(name: &str) -> Option<Place> {
-    NAMES.iter().position(|known| *known == name)
-}
+/// What the names of its programs mean.
+const WORDS: &[(&str, Meaning)] = &[
+    ("!", Meaning::Remark),
+    ("MODULE", Meaning::Nothing),
+    ("VAR", Meaning::Nothing),
+    ("PROC", Meaning::Nothing),
+    ("ENDPROC", Meaning::End),
+    ("MoveAbsJ", Meaning::JointMove),
+    ("MoveJ", Meaning::PoseMove),
+    ("MoveL", Meaning::PoseMove),
+    ("MoveC", Meaning::PoseMove),
+    ("CJointT", Meaning::JointsNow),
+    ("ConfJ", Meaning::Nothing),
+    ("ConfL", Meaning::Nothing),
+    ("TPWrite", Meaning::Nothing),
+    ("WaitTime", Meaning::Dwell),
+    ("Stop", Meaning::Stop),
+    ("ChangeTool", Meaning::ToolChange),
+    ("SpindleCw", Meaning::SpindleClockwise),
+    ("SpindleCcw", Meaning::SpindleCounterClockwise),
+    ("SpindleOff", Meaning::SpindleOff),
+    ("SpindleOrient", Meaning::SpindleOrient),
+    ("CoolantOn", Meaning::CoolantOn),
+    ("CoolantOff", Meaning::CoolantOff),
+];
 
 impl Dialect for Rapid {
     fn options() -> &'static [OptionSpec] {
@@ -98,26 +104,14 @@ impl Dialect for Rapid {
         if setup.units != Units::Millimetre {
             return Err("RAPID counts in millimetres: units = \"mm\"".to_owned());
         }
-        let mut places = Vec::new();
-        for word in setup.words {
-            let name = word.name;
-            places.push(place(name).ok_or_else(|| {
-                format!("axis {name}: A B C U V W are the axes 1 to 6 of a robot, X Y Z those beside it (eax_a to eax_c): rename the axis, in the chain too")
-            })?);
-            if word.wrapped {
-                return Err(format!(
-                    "axis {name}: MoveAbsJ leads an axis to the value that is written, whichever turn: leave `range` out"
-                ));
-            }
-        }
         let decimals =
             |rotary: bool| setup.integer(if rotary { "decimals" } else { "linear_decimals" }) as u8;
         Ok(Rapid {
-            places,
+            axes: ArmWords::new(setup)?,
             decimals: setup.words.iter().map(|word| decimals(word.rotary)).collect(),
             depth: setup.words.iter().map(|word| word.depth).collect(),
             rotary: setup.words.iter().map(|word| word.rotary).collect(),
-            program: identifier(setup.program),
+            program: identifier(setup.program, NAME),
             zone: setup.text("zone").to_owned(),
             tool: setup.text("tool").to_owned(),
             optional_stop: setup.text("optional_stop").to_owned(),
@@ -131,6 +125,7 @@ impl Dialect for Rapid {
             inverse_time: Some(3),
             feed_per_revolution: 3,
             extension: "mod".to_owned(),
+            language: Language::Joints,
             ..Format::default()
         }
     }
@@ -138,6 +133,11 @@ impl Dialect for Rapid {
     /// No length is compensated by the control: values of axes are those with the tool that the program is for.
     fn capabilities(&self) -> Capabilities {
         Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET
+    }
+
+    fn vocabulary(&self) -> Vec<VocabularyWord> {
+        let known = WORDS.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning));
+        known.chain(VocabularyWord::first_of(&self.optional_stop, Meaning::OptionalStop)).collect()
     }
 
     fn relies_on(&self) -> Vec<String> {
@@ -223,7 +223,7 @@ impl Rapid {
         line("here:=CJointT();", out);
         for (word, value) in words.iter().enumerate().filter(|(word, _)| which(self, *word)) {
             let value = number(*value, self.decimals[word]);
-            line(&format!("here.{}:={value};", COMPONENTS[self.places[word]]), out);
+            line(&format!("here.{}:={value};", COMPONENTS[self.axes.place(word)]), out);
         }
         line(&format!("MoveAbsJ here,vmax,fine,{};", self.tool), out);
     }
@@ -248,15 +248,14 @@ impl Rapid {
             }
             Some(other) => return Err(format!("a robot has no feed like {other}")),
         };
-        let mut values: [String; 2 * AXES] = std::array::from_fn(|place| match place {
-            0..AXES => "0".to_owned(),
+        let own = self.axes.words();
+        let values: [String; ARM_AXES] = std::array::from_fn(|place| match own[place] {
+            Some(word) => number(words.get(word).copied().unwrap_or(0.0), self.decimals[word]),
+            None if place < ARM_JOINTS => "0".to_owned(),
             // An axis that is not there.
-            _ => "9E9".to_owned(),
+            None => "9E9".to_owned(),
         });
-        for (word, value) in words.iter().enumerate() {
-            values[self.places[word]] = number(*value, self.decimals[word]);
-        }
-        let (arm, beside) = values.split_at(AXES);
+        let (arm, beside) = values.split_at(ARM_JOINTS);
         let target = format!("[[{}],[{}]]", arm.join(","), beside.join(","));
         line(&format!("MoveAbsJ {target},{pace},{zone},{};", self.tool), out);
         Ok(())

@@ -43,7 +43,7 @@ fn calls_by_l(block: &NcBlock, language: Language) -> bool {
             let mut items = block.items.iter();
             !items.any(|item| matches!(item, NcItem::Word(word) if word.letter == b'G'))
         }
-        Language::Macro | Language::Rs274 | Language::Conversational => false,
+        Language::Macro | Language::Rs274 | Language::Conversational | Language::Joints => false,
     }
 }
 

@@ -130,6 +130,7 @@ impl ControlState {
             variables: super::variables::Variables::new(lexicon.language()),
             cycles: super::cycles::CycleState::default(),
             spline: None,
+            joint_variable: super::statements::JointVariable::default(),
             path: super::conversational::PathMemory::default(),
             state: MachineState {
                 solver: Arc::clone(&solver),

@@ -75,7 +75,7 @@ impl ControlState {
     }
 
     /// Goes to `joints`, which the program states as positions of the machine; those of the places in `said` are stated.
-    fn go_machine(
+    pub(super) fn go_machine(
         &mut self,
         kind: MotionKind,
         joints: &Joints,

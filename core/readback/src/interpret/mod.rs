@@ -17,6 +17,7 @@
 //! | `frame` | frames within one another |
 //! | `flow`, `astray`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
 //! | `cycles`, `planes`, `frames`, `conversational` | cycles, tilted planes, shifts; Heidenhain's blocks |
+//! | `statements` | joint moves of robots |
 
 mod along;
 mod arcs;
@@ -47,6 +48,7 @@ mod spindle;
 mod spindle_request;
 mod splines;
 mod state;
+mod statements;
 mod tools;
 mod variables;
 
@@ -128,7 +130,7 @@ pub struct ModesInForce {
 struct Runner {
     control: ControlState,
     words: BlockWords,
-    conversational: bool,
+    notation: Notation,
 }
 
 impl Runner {
@@ -142,21 +144,24 @@ impl Runner {
         if block.skipped {
             self.control.say_skipped();
         }
-        if self.conversational {
-            conversational::run(&mut self.control, block, &mut self.words)
-        } else {
-            block::run(&mut self.control, block, &mut self.words)
+        match self.notation {
+            Notation::Words => block::run(&mut self.control, block, &mut self.words),
+            Notation::Conversational => {
+                conversational::run(&mut self.control, block, &mut self.words)
+            }
+            Notation::Statements => statements::run(&mut self.control, block),
         }
     }
 }
 
 /// Codes of refusals of blocks whose words are not run; all others say what a motion lacks.
-const NOT_RUN: [&str; 9] = [
+const NOT_RUN: [&str; 10] = [
     "nc-conversational",
     "nc-cycle",
     "nc-expression",
     "nc-flow",
     "nc-machine",
+    "nc-statement",
     "nc-subprogram",
     "nc-variable",
     "nc-word",
@@ -189,7 +194,7 @@ impl<R: Read + Seek> Interpreter<R> {
         let runner = Runner {
             control: ControlState::new(machine, lexicon, offsets, file)?,
             words: BlockWords::default(),
-            conversational: lexicon.syntax().notation == Notation::Conversational,
+            notation: lexicon.syntax().notation,
         };
         Ok(Self {
             flow: ProgramFlow::new(reader, lexicon.language(), limits, file),
@@ -295,7 +300,7 @@ impl<R: Read + Seek> Interpreter<R> {
     /// Whether the next blocks are run together: they wait to be told then.
     fn begins_run(&mut self) -> bool {
         let Self { flow, runner, run, .. } = self;
-        if runner.conversational || run.longest == 0 || runner.control.ended {
+        if runner.notation != Notation::Words || run.longest == 0 || runner.control.ended {
             return false;
         }
         let Some(rule) = runner.control.run_rule(run) else {

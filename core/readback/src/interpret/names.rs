@@ -48,6 +48,8 @@ pub(super) fn take(
             NcItem::Assign { .. } | NcItem::Flow(_) => {
                 return Err(control.refuse("nc-flow", "what leads the program elsewhere, or sets a variable, stands among words of motion"));
             }
+            // Statements go a way of their own.
+            NcItem::Statement(_) => {}
             NcItem::Number(number) => {
                 let message = format!("{} stands alone", number.value);
                 return Err(control.refuse("nc-word", message));

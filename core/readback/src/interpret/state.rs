@@ -63,6 +63,8 @@ pub(super) struct ControlState {
     pub face: Option<Box<super::face::FaceReading>>,
     /// The spline whose control points are told, if one is.
     pub spline: Option<Box<OpenSpline>>,
+    /// The variable of joint positions that a robot's program has filled last.
+    pub joint_variable: super::statements::JointVariable,
     /// What conversational path functions remember.
     pub path: super::conversational::PathMemory,
     /// What its motions share; handed on when something of it changes. After a change: `ControlState::state_changed`.

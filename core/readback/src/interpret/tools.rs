@@ -134,6 +134,13 @@ impl ControlState {
     /// Where the axes stand that axis positions count from, without the work offset: `exact` with the tip of the tool
     /// on the part origin, but that the control has put the length along one axis, wherever the tool lies.
     pub(super) fn counted_from(&self, exact: Joints) -> Joints {
+        if self.lexicon.language() == Language::Joints {
+            let mut shown = Joints::default();
+            for (shown, axis) in shown.iter_mut().zip(&self.machine.axes) {
+                *shown = -axis.zero;
+            }
+            return shown;
+        }
         let [.., z] = self.axes.cartesian;
         let place = match (self.machine.length_axis, self.lexicon.language()) {
             (LengthAxis::None, _) => {

@@ -145,7 +145,7 @@ impl Variables {
                 None => name.starts_with("#<") && !name.starts_with("#<_"),
             },
             // The names of a subprogram in the same file are those of the program.
-            Language::Names | Language::Instructions => false,
+            Language::Names | Language::Instructions | Language::Joints => false,
             Language::Conversational => name.starts_with("QL"),
         }
     }
@@ -162,7 +162,7 @@ impl Variables {
             },
             Language::Names => name.starts_with('$'),
             // Its programs set none that is read.
-            Language::Instructions => true,
+            Language::Instructions | Language::Joints => true,
             Language::Conversational => {
                 let digits = name.trim_start_matches(['Q', 'L', 'R', 'S']);
                 let number: Option<u32> = digits.parse().ok();

@@ -19,6 +19,8 @@ pub(super) fn words(language: Language) -> impl Iterator<Item = (&'static str, W
         Language::Names => (&[SHARED, NAMES], REFUSED_NAMES),
         Language::Conversational => (&[SHARED, CONVERSATIONAL], &[]),
         Language::Instructions => (&[SHARED, INSTRUCTIONS], REFUSED_INSTRUCTIONS),
+        // Three makers' languages, of which no two share a word.
+        Language::Joints => (&[], &[]),
     };
     let known = tables.iter().flat_map(|table| table.iter());
     let known = known.map(|(word, meaning)| (*word, WordMeaning::Means(*meaning)));

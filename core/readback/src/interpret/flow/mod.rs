@@ -422,9 +422,10 @@ impl<R: Read + Seek> ProgramFlow<R> {
         let wanted = match self.language {
             Language::Rs274 => NcTarget::Subprogram(target.to_owned()),
             Language::Macro => NcTarget::Program(target.to_owned()),
-            Language::Names | Language::Conversational | Language::Instructions => {
-                NcTarget::Label(target.to_owned())
-            }
+            Language::Names
+            | Language::Conversational
+            | Language::Instructions
+            | Language::Joints => NcTarget::Label(target.to_owned()),
         };
         let start = self.find(&wanted, JumpDirection::Anywhere)?;
         let Some(start) = start else {

@@ -12,6 +12,7 @@ fn run_with(language: Language, program: &str, limits: Limits) -> (Vec<f64>, Opt
     let syntax = NcSyntax {
         notation: match language {
             Language::Conversational => Notation::Conversational,
+            Language::Joints => Notation::Statements,
             _ => Notation::Words,
         },
         line_remarks: vec![";".to_owned()],

@@ -1,0 +1,425 @@
+//! Statements of robots' languages that lead the joints of an arm to positions, and what stands between them.
+//!
+//! The dialect's vocabulary says what a name does (`MoveAbsJ`, `PTP`, `movej` are [`Meaning::JointMove`]); where the
+//! positions, the time and the speed stand in a statement is told by how it is written. All else might move the arm, and is
+//! refused.
+
+use post_grammar::nc::{NcBlock, NcItem, NcTerm};
+use post_machine::description::InverseTime;
+use post_machine::diagnostic::Diagnostic;
+use post_plugin::{ARM_AXES, ARM_JOINTS, Meaning, arm_axis};
+
+use super::go::MotionTarget;
+use super::spindle_request::SpindleRequest;
+use super::state::{ControlState, FeedMeaning};
+use crate::lexicon::WordMeaning;
+use crate::{Curve, MotionKind, ProgramEvent};
+
+type Answer<T> = Result<T, Box<Diagnostic>>;
+
+/// From this on a position of an axis beside the arm says that there is none.
+const NO_AXIS: f64 = 8.9e9;
+
+/// A variable that was filled with where the joints stand, and what was set of it since.
+#[derive(Clone, Debug, Default)]
+pub(super) struct JointVariable {
+    name: String,
+    said: Vec<JointPosition>,
+}
+
+/// Where an axis of a robot's control is to go.
+#[derive(Clone, Copy, Debug)]
+struct JointPosition {
+    /// Which, from 0; those beside the arm from [`ARM_JOINTS`] on.
+    place: usize,
+    /// Degrees, or mm of one that slides.
+    value: f64,
+}
+
+/// Positions that a statement leads to.
+#[derive(Clone, Debug)]
+struct JointTarget {
+    positions: Vec<JointPosition>,
+    /// The others stand where they stand.
+    some: bool,
+}
+
+/// How fast a statement leads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Pace {
+    /// As fast as the axes go.
+    Rapid,
+    /// So many minutes.
+    Minutes(f64),
+    /// The tip at so many mm/min.
+    Tip(f64),
+}
+
+/// Runs the statement of a line.
+pub(super) fn run(control: &mut ControlState, block: &NcBlock) -> Answer<()> {
+    for remark in &block.remarks {
+        control.remark(remark);
+    }
+    for item in &block.items {
+        if let NcItem::Statement(terms) = item {
+            statement(control, terms)?;
+        }
+    }
+    Ok(())
+}
+
+fn statement(control: &mut ControlState, terms: &[NcTerm]) -> Answer<()> {
+    let terms = match terms.split_last() {
+        Some((NcTerm::Sign(b';'), rest)) => rest,
+        _ => terms,
+    };
+    if terms.contains(&NcTerm::Sign(b';')) {
+        return Err(control.refuse("nc-statement", "more than one statement stands in this line"));
+    }
+    let name = match terms.first() {
+        // What a file of KUKA's begins with.
+        None | Some(NcTerm::Sign(b'&')) => return Ok(()),
+        Some(NcTerm::Name(name)) => name,
+        Some(_) => return Err(control.refuse("nc-statement", "no statement begins so")),
+    };
+    if let Some((left, right)) = assignment(terms) {
+        return assign(control, left, right);
+    }
+    let sense = control.lexicon.name(name);
+    let WordMeaning::Means(meaning) = sense else {
+        let message = format!("{name} is no statement that is known here, and might move the arm");
+        return Err(control.refuse("nc-statement", message));
+    };
+    obey(control, name, meaning, &terms[1..])
+}
+
+fn obey(control: &mut ControlState, name: &str, meaning: Meaning, terms: &[NcTerm]) -> Answer<()> {
+    let number = || terms.iter().find_map(first_number);
+    let due = |control: &ControlState| {
+        let message = format!("{name} does not say its number");
+        number().ok_or_else(|| control.refuse("nc-statement", message))
+    };
+    match meaning {
+        Meaning::Nothing => {}
+        Meaning::JointMove => return joint_move(control, name, terms),
+        Meaning::PoseMove => {
+            let message = format!(
+                "{name} goes to a pose, which is not read: moves to positions of the joints are"
+            );
+            return Err(control.refuse("nc-statement", message));
+        }
+        Meaning::Dwell => {
+            let event = ProgramEvent::Dwell { time: due(control)?, revolutions: false };
+            control.tell(event);
+        }
+        Meaning::Stop => return control.stop(ProgramEvent::Stop),
+        Meaning::OptionalStop => return control.stop(ProgramEvent::OptionalStop),
+        Meaning::End => control.end(),
+        Meaning::ToolChange => {
+            let number = due(control)?;
+            let number = super::block_words::which(b'T', number, control)?;
+            return control.change_tool(Some(number), None);
+        }
+        Meaning::SpindleClockwise | Meaning::SpindleCounterClockwise => {
+            control.modal.speed = due(control)?;
+            control.turn_spindle(match meaning {
+                Meaning::SpindleClockwise => SpindleRequest::Clockwise,
+                _ => SpindleRequest::CounterClockwise,
+            });
+        }
+        Meaning::SpindleOff => control.turn_spindle(SpindleRequest::Off),
+        Meaning::SpindleOrient => control.turn_spindle(SpindleRequest::Oriented),
+        Meaning::CoolantOn => control.coolant(match terms.iter().find_map(first_text) {
+            Some("Flood") => 8,
+            Some("Mist") => 7,
+            _ => 0,
+        }),
+        Meaning::CoolantOff => control.coolant_off(),
+        _ => {
+            let message = format!("{name} is not run: what the arm does then is not followed");
+            return Err(control.refuse("nc-statement", message));
+        }
+    }
+    Ok(())
+}
+
+/// What stands on both sides of `=` or `:=`, if the statement sets a variable.
+fn assignment(terms: &[NcTerm]) -> Option<(&[NcTerm], &[NcTerm])> {
+    let at = terms.iter().position(|term| *term == NcTerm::Sign(b'='))?;
+    let (left, right) = (&terms[..at], &terms[at + 1..]);
+    let left = match left.split_last() {
+        Some((NcTerm::Sign(b':'), rest)) => rest,
+        _ => left,
+    };
+    matches!(left, [NcTerm::Name(_)] | [NcTerm::Name(_), NcTerm::Group(b'[', _)])
+        .then_some((left, right))
+}
+
+/// A variable gets a value: that of joint positions, one of its components, or one that moves nothing.
+fn assign(control: &mut ControlState, left: &[NcTerm], right: &[NcTerm]) -> Answer<()> {
+    let Some(NcTerm::Name(name)) = left.first() else {
+        return Ok(());
+    };
+    if let Some(NcTerm::Name(asked)) = right.first()
+        && control.lexicon.name(asked) == WordMeaning::Means(Meaning::JointsNow)
+        && left.len() == 1
+    {
+        control.joint_variable = JointVariable { name: name.clone(), said: Vec::new() };
+        return Ok(());
+    }
+    let (whole, component) = name.split_once('.').unwrap_or((name, ""));
+    if !control.joint_variable.name.is_empty() && control.joint_variable.name == whole {
+        let set = match left.get(1) {
+            None => component_place(component).zip(angle(right, false)),
+            Some(NcTerm::Group(_, index)) => index_of(index).zip(angle(right, true)),
+            Some(_) => None,
+        };
+        let Some((place, value)) = set else {
+            let message = format!("what {name} becomes is not understood");
+            return Err(control.refuse("nc-statement", message));
+        };
+        control.joint_variable.said.push(JointPosition { place, value });
+        return Ok(());
+    }
+    match control.lexicon.name(name) {
+        WordMeaning::Means(Meaning::Nothing) => Ok(()),
+        _ => {
+            let message = format!("{name} is set here, and might change how the arm moves");
+            Err(control.refuse("nc-statement", message))
+        }
+    }
+}
+
+/// `ROBAX.RAX_1`, `EXTAX.EAX_A`.
+fn component_place(component: &str) -> Option<usize> {
+    if let Some(number) = component.strip_prefix("ROBAX.RAX_") {
+        return number.parse::<usize>().ok()?.checked_sub(1).filter(|place| *place < ARM_JOINTS);
+    }
+    let letter = component.strip_prefix("EXTAX.EAX_")?;
+    let place = "ABCDEF".find(letter).filter(|_| letter.len() == 1)?;
+    Some(ARM_JOINTS + place)
+}
+
+/// `[0]`: the first joint.
+fn index_of(terms: &[NcTerm]) -> Option<usize> {
+    match terms {
+        [NcTerm::Number(number)] => (0..ARM_AXES).find(|place| *place as f64 == number.value),
+        _ => None,
+    }
+}
+
+/// Degrees (or mm): a number, `D2R(30)`; a number alone is of `radians` where its language has them.
+fn angle(terms: &[NcTerm], radians: bool) -> Option<f64> {
+    match terms {
+        [NcTerm::Number(number)] if radians => Some(number.value.to_degrees()),
+        [NcTerm::Number(number)] => Some(number.value),
+        [NcTerm::Name(name), NcTerm::Group(b'(', inside)] if radians && name == "D2R" => {
+            angle(inside, false)
+        }
+        _ => None,
+    }
+}
+
+/// Parts between commas.
+fn parts(terms: &[NcTerm]) -> Vec<&[NcTerm]> {
+    terms.split(|term| *term == NcTerm::Sign(b',')).collect()
+}
+
+/// The first number of a term.
+fn first_number(term: &NcTerm) -> Option<f64> {
+    match term {
+        NcTerm::Number(number) => Some(number.value),
+        NcTerm::Group(_, inside) => inside.iter().find_map(first_number),
+        _ => None,
+    }
+}
+
+/// The first text of a term.
+fn first_text(term: &NcTerm) -> Option<&str> {
+    match term {
+        NcTerm::Text(text) => Some(text),
+        NcTerm::Group(_, inside) => inside.iter().find_map(first_text),
+        _ => None,
+    }
+}
+
+/// Leads the joints to where the statement says.
+fn joint_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> Answer<()> {
+    let arguments = match terms {
+        [NcTerm::Group(b'(', inside)] => parts(inside),
+        _ => parts(terms),
+    };
+    let not_read = |control: &ControlState| {
+        let message = format!("the positions of {name} are not written as they are read here");
+        control.refuse("nc-statement", message)
+    };
+    let Some((first, rest)) = arguments.split_first() else {
+        return Err(not_read(control));
+    };
+    let target = match first.first() {
+        Some(NcTerm::Name(variable)) if *variable == control.joint_variable.name => {
+            Some(JointTarget { positions: control.joint_variable.said.clone(), some: true })
+        }
+        Some(NcTerm::Group(b'[', inside)) => listed(inside),
+        Some(NcTerm::Group(b'{', inside)) => named(inside),
+        _ => None,
+    };
+    let target = target.ok_or_else(|| not_read(control))?;
+    let pace = pace(control, name, &first[1..], rest)?;
+    go(control, &target, pace)
+}
+
+/// `[[0,0,0,0,30,0],[9E9,1500,..]]` in degrees, or `[d2r(0),-1.57,..]` in radians.
+fn listed(inside: &[NcTerm]) -> Option<JointTarget> {
+    let mut positions = Vec::new();
+    let lists = parts(inside);
+    let whole = match lists.as_slice() {
+        [[NcTerm::Group(b'[', arm)], [NcTerm::Group(b'[', beside)]] => {
+            let lists = [(0, parts(arm)), (ARM_JOINTS, parts(beside))];
+            for (offset, list) in lists {
+                for (place, part) in list.into_iter().enumerate() {
+                    let value = angle(part, false)?;
+                    if offset == 0 || value < NO_AXIS {
+                        positions.push(JointPosition { place: offset + place, value });
+                    }
+                }
+            }
+            true
+        }
+        flat => {
+            for (place, part) in flat.iter().enumerate() {
+                positions.push(JointPosition { place, value: angle(part, true)? });
+            }
+            flat.len() == ARM_JOINTS
+        }
+    };
+    whole.then_some(JointTarget { positions, some: false })
+}
+
+/// `{A1 0,A2 -90,E1 1500}` in degrees and mm.
+fn named(inside: &[NcTerm]) -> Option<JointTarget> {
+    let mut positions = Vec::new();
+    for part in parts(inside) {
+        let [NcTerm::Name(name), NcTerm::Number(number)] = part else {
+            return None;
+        };
+        let place = arm_axis(name).filter(|_| name.len() == 2)?;
+        positions.push(JointPosition { place, value: number.value });
+    }
+    Some(JointTarget { positions, some: true })
+}
+
+/// How fast a joint move goes: `v1000\T:=0.5` and the zone behind it; `t=0.5`; what stands behind the positions themselves
+/// (`C_PTP`) leaves them.
+fn pace(
+    control: &mut ControlState,
+    name: &str,
+    behind: &[NcTerm],
+    arguments: &[&[NcTerm]],
+) -> Answer<Pace> {
+    let mut pace = Pace::Rapid;
+    let mut leaves = !behind.is_empty();
+    for (place, argument) in arguments.iter().enumerate() {
+        match argument {
+            [NcTerm::Name(key), NcTerm::Sign(b'='), NcTerm::Number(number)] => match key.as_str() {
+                "T" if number.value > 0.0 => pace = Pace::Minutes(number.value / 60.0),
+                "R" => leaves |= number.value != 0.0,
+                "A" | "V" | "T" => {}
+                _ => return Err(not_known(control, name, key)),
+            },
+            [NcTerm::Name(speed), switches @ ..] if place == 0 => {
+                pace = speed_of(speed, switches).ok_or_else(|| not_known(control, name, speed))?;
+            }
+            [NcTerm::Name(zone)] if place == 1 => leaves |= zone != "FINE",
+            // The tool, and the work object: joints do not ask for them.
+            [NcTerm::Name(_), ..] if place == 2 => {}
+            _ => return Err(not_known(control, name, "an argument")),
+        }
+    }
+    if leaves {
+        let message = format!(
+            "{name} does not come to its positions: how far it leaves them is not followed"
+        );
+        control.note(Diagnostic::warning("nc-zone", message));
+    }
+    Ok(pace)
+}
+
+fn not_known(control: &ControlState, name: &str, what: &str) -> Box<Diagnostic> {
+    control.refuse("nc-statement", format!("{what} of {name} is not understood"))
+}
+
+/// `VMAX`, `V100`, `V1000\T:=0.5`, `V1000\V:=10`.
+fn speed_of(speed: &str, switches: &[NcTerm]) -> Option<Pace> {
+    match switches {
+        [] if speed == "VMAX" => Some(Pace::Rapid),
+        [] => {
+            let speed: f64 = speed.strip_prefix('V')?.parse().ok()?;
+            Some(Pace::Tip(60.0 * speed))
+        }
+        [
+            NcTerm::Sign(b'\\'),
+            NcTerm::Name(switch),
+            NcTerm::Sign(b':'),
+            NcTerm::Sign(b'='),
+            NcTerm::Number(number),
+        ] if number.value > 0.0 => match switch.as_str() {
+            "T" => Some(Pace::Minutes(number.value / 60.0)),
+            "V" => Some(Pace::Tip(60.0 * number.value)),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Leads the axes of the machine to the positions.
+fn go(control: &mut ControlState, target: &JointTarget, pace: Pace) -> Answer<()> {
+    let mut joints = control.at.joints;
+    let mut said = 0;
+    for JointPosition { place, value } in &target.positions {
+        let mut axes = control.machine.axes.iter();
+        let Some(axis) = axes.position(|axis| arm_axis(&axis.name) == Some(*place)) else {
+            // A list has all joints of an arm, whether the machine file has them or not.
+            if *value == 0.0 && !target.some {
+                continue;
+            }
+            let message = format!(
+                "{} has no axis {} of a robot, and the program leads it to {value}",
+                control.machine.name,
+                place + 1
+            );
+            return Err(control.refuse("nc-axis", message));
+        };
+        joints[axis] = control.shown(axis, *value);
+        said |= 1 << axis;
+    }
+    if target.some {
+        control.uncouple(&mut joints, said);
+        let kind = if pace == Pace::Rapid { MotionKind::Rapid } else { MotionKind::Feed };
+        set_pace(control, pace, &joints);
+        return control.go_machine(kind, &joints, said);
+    }
+    control.begins();
+    control.relies_on_nothing_left();
+    let kind = if pace == Pace::Rapid { MotionKind::Rapid } else { MotionKind::Feed };
+    set_pace(control, pace, &joints);
+    let words = MotionTarget { joints, said, ..MotionTarget::default() };
+    control.go(kind, &Curve::Straight, &words)
+}
+
+/// The time of the move to `joints` as the feed that is in force.
+fn set_pace(control: &mut ControlState, pace: Pace, joints: &post_machine::kinematics::Joints) {
+    let minutes = match pace {
+        Pace::Rapid => return,
+        Pace::Minutes(minutes) => minutes,
+        Pace::Tip(feed) => {
+            let tip = control.state.solver.chain().forward(joints).tip;
+            (tip - control.at.pose.tip).norm() / feed
+        }
+    };
+    control.modal.feed_mode = FeedMeaning::Inverse;
+    control.modal.feed = (minutes > 0.0).then(|| match control.machine.control.inverse_time {
+        InverseTime::Minutes => 1.0 / minutes,
+        InverseTime::Seconds => 1.0 / (60.0 * minutes),
+    });
+}

@@ -2,7 +2,8 @@
 
 use super::{conversational, hash, instructions, names};
 use post_grammar::nc::{
-    Approach, JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcSyntax, NcValue, parse_block,
+    Approach, JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcSyntax, NcTerm, NcValue,
+    Notation, parse_block,
 };
 
 fn block(line: &str, syntax: &NcSyntax) -> NcBlock {
@@ -40,6 +41,46 @@ fn item(item: &NcItem) -> String {
         NcItem::Number(number) => format!("{}", number.value),
         NcItem::Text(text) => format!("{text:?}"),
         NcItem::Flow(flow) => self::flow(flow),
+        NcItem::Statement(terms) => self::terms(terms),
+    }
+}
+
+fn terms(terms: &[NcTerm]) -> String {
+    let shown: Vec<String> = terms
+        .iter()
+        .map(|term| match term {
+            NcTerm::Name(name) => name.clone(),
+            NcTerm::Number(number) => format!("<{}>", number.value),
+            NcTerm::Text(text) => format!("{text:?}"),
+            NcTerm::Group(open, inside) => format!("{}{}", char::from(*open), self::terms(inside)),
+            NcTerm::Sign(sign) => char::from(*sign).to_string(),
+        })
+        .collect();
+    shown.join(" ")
+}
+
+#[test]
+fn statements_of_robots_are_trees_of_their_parts() {
+    let syntax = NcSyntax {
+        notation: Notation::Statements,
+        line_remarks: vec!["!".to_owned()],
+        ..NcSyntax::default()
+    };
+    for (line, said) in [
+        (
+            "MoveAbsJ [[-1.5,.5,9E9]],v1000\\T:=2.5e-3,fine,tool0; ! there",
+            "MOVEABSJ [[<-1.5> , <0.5> , <9000000000> , V1000 \\ T : = <0.0025> , FINE , TOOL0 ; (there)",
+        ),
+        ("PTP {A1 0,A2 -90}", "PTP {A1 <0> , A2 <-90>"),
+        ("here[0] = d2r(5-3)", "HERE [<0> = D2R (<5> - <3>"),
+        ("CoolantOn \"Flood\";", "COOLANTON \"Flood\" ;"),
+        ("$VEL.CP=0.5", "$VEL.CP = <0.5>"),
+        ("here.robax.rax_1:=-2;", "HERE.ROBAX.RAX_1 : = <-2> ;"),
+    ] {
+        assert_eq!(shown(line, &syntax), said, "{line}");
+    }
+    for line in ["MoveAbsJ [[0,0", "a)", "(]", "x \"y", "[1,2"] {
+        assert!(parse_block(line, &syntax).is_err(), "{line}");
     }
 }
 

@@ -118,6 +118,40 @@ fn a_rapid_goes_through_the_stock_where_the_tool_has_been() {
     }
 }
 
+/// A rapid that begins and ends off the part keeps off it on the way as far as is to be kept at rapid; one that leaves it or
+/// comes to it only touches nothing. The same of a stock that is cut.
+#[test]
+fn a_rapid_keeps_off_the_part_where_it_begins_and_ends_farther() {
+    let past = |height: f64| format!("G0 X-100. Y0.\nG0 Z{height}\nG0 X100.\nG0 Z50.\n");
+    let near = |height: f64| format!("G0 X0. Y0.\nG0 Z{height}\nG0 Z50.\n");
+    let pair = "[clearance]\nrapid_axes = \"together\"\npairs = [{ between = [\"cutter\", \"stock\"], rapid = 3 }]\n";
+    let all = "[clearance]\nrapid_axes = \"together\"\nkeep = 3\n";
+    for cut in ["", "[stock]\ncut = true\n"] {
+        let mill = match cut.is_empty() {
+            true => MILL.to_owned(),
+            false => MILL.replace("[stock]\n", cut),
+        };
+        for rules in [pair, all] {
+            let machine = format!("{mill}{rules}");
+            for (program, clear) in [
+                (past(2.9), false),
+                (past(3.1), true),
+                (near(0.5), true),
+                (near(-0.5), false),
+                // From near to the part on along it, no nearer.
+                ("G0 X0. Y0.\nG0 Z1.\nG0 X10.\nG0 Z50.\n".to_owned(), true),
+            ] {
+                let (said, found) = milled(&machine, 1, &program, &[]);
+                assert_eq!(found, clear, "{cut}{rules}{program}: {said}");
+                if program == past(2.9) {
+                    assert_contains(&said, &["3 mm are to be kept"]);
+                }
+            }
+        }
+        assert!(milled(&mill, 1, &past(0.1), &[]).1);
+    }
+}
+
 /// Led by the register of another tool the tool is as long as it is, and that is said.
 #[test]
 fn a_tool_is_as_long_as_it_is_whatever_register_leads_it() {
@@ -257,7 +291,22 @@ fn a_pair_keeps_a_distance_of_its_own() {
         &folder,
         "[clearance]\npairs = [{ between = [\"cutter T3\", \"stock\"], keep = 1 }]\n",
     );
-    assert_contains(&proven(&folder, &[]).0, &["no distance is kept between cutter and stock"]);
+    let said = proven(&folder, &[]).0;
+    assert_contains(&said, &["cutter and stock keep no distance at feed", "--> bodies.toml:"]);
+}
+
+/// A fixture that a pair names may be taken away for one job.
+#[test]
+fn a_pair_of_a_fixture_that_is_taken_away_is_without_effect() {
+    let post = "[fixture.post]\nfile = \"post.stl\"\n";
+    let folder = folder(&format!(
+        "{post}[clearance]\nkeep = 0\npairs = [{{ between = [\"holder\", \"post\"], keep = 1 }}]\n"
+    ));
+    assert_contains(&proven(&folder, &[]).0, &["post.stl: there is no such regular file"]);
+    let (said, clear) = proven(&folder, &["--set", "fixture.post.file=\"\""]);
+    assert!(clear, "{said}");
+    let told = "warning[clearance-body]: post is taken away: what [clearance] says of the pair";
+    assert_contains(&said, &[told]);
 }
 
 /// The program is proven before it gets its name, and what is said names the line of the CL file.
@@ -372,6 +421,57 @@ fn check_tells_what_touches_and_what_has_no_body() {
     );
 }
 
+/// What `post clearance` refuses of a machine file, or leaves out, is told by `post check` in the same words.
+#[test]
+fn check_tells_all_that_clearance_refuses() {
+    let folder = tempfile::tempdir().unwrap();
+    let block = "block = [[0, 0, -40], [100, 100, 0]]\n";
+    fs::write(folder.path().join("part.nc"), "%\nO1\nG21 G90\nM30\n%\n").unwrap();
+    let sheet = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 9 0 0\nvertex 0 9 0\nendloop\nendfacet\nendsolid a\n";
+    fs::write(folder.path().join("open.stl"), sheet).unwrap();
+    for (stock, says) in [
+        (
+            format!("{block}cut = true\npart = \"none.stl\""),
+            ["the part cannot be used", "the path is that from the machine file"],
+        ),
+        (
+            format!("{block}cut = true\nresolution = 0.001"),
+            ["finer than there is room for", "help: resolution = 0."],
+        ),
+        ("file = \"open.stl\"\ncut = true".to_owned(), ["closed surfaces alone", "as a solid"]),
+    ] {
+        let text = format!("extends = \"vmc\"\nname = \"a\"\n[stock]\n{stock}\n");
+        fs::write(folder.path().join("m.toml"), text).unwrap();
+        for words in [&["check", "m.toml"][..], &["clearance", "part.nc", "-m", "m.toml"]] {
+            let run = post_in(folder.path(), words);
+            assert_contains(&run.err, &["error[clearance-body]", says[0], says[1]]);
+            assert_eq!(run.code, 1, "{}", run.err);
+        }
+    }
+    // What may be right for one job and wrong for another is a warning.
+    for (more, says) in [
+        ("length = 90\ncutter = [[0, 5], [50, 5]]", "no shank is held against the stock"),
+        ("length = 90\nedge = 10", "edge of tool 1 has no effect: its cutter is not drawn"),
+        ("holder = [[0, 5], [50, 5]]", "how long tool 1 is the machine file does not say"),
+    ] {
+        let text = format!(
+            "extends = \"vmc\"\nname = \"a\"\n[stock]\n{block}cut = true\n[tools.1]\n{more}\n"
+        );
+        fs::write(folder.path().join("m.toml"), text).unwrap();
+        let run = post_in(folder.path(), &["check", "m.toml"]);
+        assert_contains(&run.err, &["warning[clearance-body]", says]);
+        assert_eq!(run.code, 0, "{}", run.err);
+    }
+    // And that ways would go through a part that is not drawn.
+    fs::write(
+        folder.path().join("m.toml"),
+        "extends = \"vmc\"\nname = \"a\"\n[clearance]\nlink = true\n",
+    )
+    .unwrap();
+    let run = post_in(folder.path(), &["check", "m.toml"]);
+    assert_contains(&run.err, &["no [stock] is drawn: they would go through the part"]);
+}
+
 #[test]
 fn check_draws_all_bodies_with_their_names() {
     let folder = folder("[fixture.post]\nblock = [[60, -60, 0], [90, 60, 40]]\n");
@@ -400,6 +500,22 @@ fn bodies_that_cannot_be_are_refused_by_their_line() {
         ("[fixture.stock]\nblock = [[0, 0, 0], [9, 9, 9]]\n", "a fixture cannot be called stock"),
         ("[fixture.A]\nblock = [[0, 0, 0], [9, 9, 9]]\n", "a fixture cannot be called A"),
         ("[tools.4]\nholder = [[0, -5], [3, 5]]\n", "the holder of tool 4 has the radius -5 mm"),
+        (
+            "[tools.4]\ncutter = [[10, 5], [30, 5]]\n",
+            "the cutter of tool 4 begins 10 mm above its tip",
+        ),
+        (
+            "[tools.4]\ncutter = [[-1, 5], [30, 5]]\n",
+            "the cutter of tool 4 begins 1 mm below its tip",
+        ),
+        (
+            "[tools.4]\ncutter = [[0, 5], [50, 5], [20, 5]]\n",
+            "the cutter of tool 4 goes back, from z = 50 to 20 mm",
+        ),
+        (
+            "[tools.4]\nholder = [[-30, 20], [0, 20]]\n",
+            "the holder of tool 4 ends at z = 0 mm: no part of it is below the gauge point",
+        ),
     ] {
         describe(&folder, more);
         let (said, clear) = proven(&folder, &[]);

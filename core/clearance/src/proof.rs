@@ -11,6 +11,7 @@ mod room;
 use nalgebra::Vector3;
 use post_machine::kinematics::{Joint, Joints};
 
+use crate::ALLOWANCE;
 use crate::distance::{self, Apart};
 use crate::pair::View;
 use crate::piece::{Piece, Way};
@@ -19,6 +20,7 @@ use crate::planes::Planes;
 use crate::shape::Shape;
 use room::{Lately, Room, Sleep, Spare};
 
+use body::may_touch;
 pub use body::{Body, BodyKind, Rules};
 
 /// Pieces of one motion that a pair is looked at on; what is not proven then is not.
@@ -36,6 +38,9 @@ pub struct Move<'a> {
     pub rapid: bool,
     /// Line of the program.
     pub line: u64,
+    /// Of a way that might as well be another one: it keeps so much more than the rules ask for, mm, a cutter from the stock
+    /// among it, however near to it the way begins and ends.
+    pub beyond: Option<f64>,
 }
 
 /// What is not clear.
@@ -117,6 +122,8 @@ pub struct Proof {
     sleep: Sleep,
     lately: Lately,
     last: Option<Joints>,
+    /// What the last motion kept more than the rules ask for, mm.
+    beyond: f64,
     distances: u64,
 }
 
@@ -138,7 +145,7 @@ impl Proof {
         }
         let (sleep, lately) = (Sleep::default(), Lately::default());
         let axes = axes.to_vec();
-        Self { axes, rules, bodies, pairs, sleep, lately, last: None, distances: 0 }
+        Self { axes, rules, bodies, pairs, sleep, lately, last: None, beyond: 0.0, distances: 0 }
     }
 
     /// The same with other rules for some pairs.
@@ -218,6 +225,11 @@ impl Proof {
         self.last = Some(to);
         self.lately.take(&to);
         let whole = motion.way.whole();
+        let beyond = motion.beyond.unwrap_or(0.0);
+        if beyond != std::mem::replace(&mut self.beyond, beyond) {
+            // Who sleeps is apart by what was to be kept then.
+            self.sleep.end();
+        }
         let sleeps = whole.as_ref().is_some_and(|whole| self.sleep.holds(whole));
         let Self { bodies, pairs, rules, distances, sleep, lately, .. } = self;
         let count = if sleeps { sleep.awake.len() } else { pairs.len() };
@@ -229,11 +241,13 @@ impl Proof {
                 continue;
             }
             let rules = pair.rules.as_ref().unwrap_or(rules);
-            let keeps = rules.keeps([one.kind, other.kind]);
+            let kinds = [one.kind, other.kind];
+            let keeps = rules.keeps(kinds).map(|keep| keep + beyond);
             let keep = keeps[usize::from(motion.rapid)];
             let (within, spans) = (rules.within, &lately.spans);
             let most = keeps[0].max(keeps[1]);
-            let trial = Trial { bodies, motion, keep, most, within, spans };
+            let yields = motion.beyond.is_none() && may_touch(kinds) && keep > ALLOWANCE;
+            let trial = Trial { bodies, motion, keep, yields, most, within, spans };
             *distances += pair.take(&trial, whole.as_ref());
         }
         if let Some(whole) = whole.as_ref().filter(|_| !sleeps) {
@@ -272,10 +286,13 @@ enum Looked {
 }
 
 /// A motion that a pair is held against.
+#[derive(Clone, Copy)]
 struct Trial<'a> {
     bodies: &'a [Body],
     motion: &'a Move<'a>,
     keep: f64,
+    /// The distance is not kept where the motion begins or ends nearer: the bodies do not touch, and no more.
+    yields: bool,
     /// What is to be kept at most, at feed or at rapid, mm.
     most: f64,
     within: f64,
@@ -384,6 +401,14 @@ impl Pair {
             return 0;
         }
         let mut computed = 0;
+        let mut trial = *trial;
+        if trial.yields {
+            computed += 2;
+            if self.is_nearer_at_an_end(&trial, whole) {
+                trial.keep = ALLOWANCE;
+            }
+        }
+        let trial = &trial;
         let mut clear_by = f64::INFINITY;
         let mut waiting = vec![whole.clone()];
         while let Some(piece) = waiting.pop() {
@@ -401,6 +426,16 @@ impl Pair {
         self.result.clear_by = self.result.clear_by.min(clear_by);
         self.make_room(trial, whole);
         computed
+    }
+
+    /// Where a motion begins or ends they are not proven to be apart by more than is to be kept.
+    fn is_nearer_at_an_end(&mut self, trial: &Trial<'_>, whole: &Piece) -> bool {
+        let far = trial.keep + trial.within;
+        let enough = Enough { wrapped: far, closely: far };
+        whole
+            .ends
+            .iter()
+            .any(|joints| self.distance(trial.bodies, joints, false, enough).at_least < far)
     }
 
     /// Nothing is known of their distance any more.

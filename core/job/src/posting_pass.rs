@@ -16,7 +16,7 @@ use post_posting::program::ReadingOptions;
 use post_posting::report::{PluginUse, PostingReport};
 use post_posting::{Observer, PathShift, Post, PostingRequest, ProgramPreview, TextSink};
 
-use super::clearance::ChoiceBodies;
+use super::clearance::{ChoiceBodies, without_stock};
 use super::plugin_finder;
 use crate::failure::Failure;
 use crate::files::{ClInput, ClPieces, ClSource, FileFault, NullSink, PathArg, ReadAhead};
@@ -89,14 +89,6 @@ pub struct PostingPass<'a> {
     pub keeps_clear: bool,
 }
 
-/// Ways between passes go past bodies: a part that nobody has drawn would be in no way's way.
-fn no_stock() -> Diagnostic {
-    let message = "ways between passes are to be shortened ([clearance] low_retracts, link), and no [stock] is drawn: they would go through the part";
-    Diagnostic::error("clearance-body", message).help(
-        "[stock] block, cylinder or file: the part as it is clamped, in the frame of the part",
-    )
-}
-
 impl PostingPass<'_> {
     /// Posts `input` and writes the program to `sink`: its report, if all is good, and every finding.
     ///
@@ -119,8 +111,8 @@ impl PostingPass<'_> {
             false => None,
         };
         let shortens = machine.clearance.shortens_ways();
-        if shortens && machine.stock.is_none() {
-            return Err(no_stock().into());
+        if let Some(finding) = without_stock(machine) {
+            return Err(finding.into());
         }
         let mut between = match (shortens, &bodies) {
             (true, Some(bodies)) => Some(bodies.coarse()),

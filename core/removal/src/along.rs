@@ -219,6 +219,20 @@ impl Watched {
         self.known = None;
     }
 
+    /// Where a way begins or ends it is not proven to be farther than `keep` mm from what is left, by `within` or more.
+    pub fn is_nearer_at_an_end(
+        &mut self,
+        field: &mut Field,
+        way: &Way<'_>,
+        keep: f64,
+        within: f64,
+    ) -> bool {
+        let far = keep + within;
+        let spared = way.whole().and_then(|whole| self.left(&whole, far, within));
+        let ends = way.ends.map(|stance| self.mounted.placement(&stance.joints));
+        spared.is_none() && ends.iter().any(|at| self.apart(field, at, &[]).at_least < far)
+    }
+
     /// Whether it keeps a distance from what is left all along a way, mm. What cannot be told from one that is too short by
     /// less than `within` counts as one.
     pub fn along(&mut self, field: &mut Field, way: &Way<'_>, keep: f64, within: f64) -> Found {

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::Args;
 use post_machine::check::{Differing, compare};
 use post_machine::description::{Machine, Setting};
-use post_machine::diagnostic::Diagnostic;
+use post_machine::diagnostic::{Diagnostic, Severity};
 use post_machine::face_mode::FaceMode;
 
 use post_cli::arguments::flag_values;
@@ -151,9 +151,13 @@ fn alone(session: &Session, arguments: &CheckArguments, machine: &Machine) -> Re
     let bodies = arguments.bodies.as_ref().map(|_| bodies_picture::draw(machine));
     let json = arguments.json.as_ref().map(|_| files::json(&check));
     let taken = write(session, arguments, [picture, bodies], json)?;
-    session.findings(&findings);
+    // What a proof would be refused for refuses the file.
+    let (errors, warnings): (Vec<_>, Vec<_>) =
+        findings.into_iter().partition(|finding| finding.severity == Severity::Error);
+    session.findings(&warnings);
+    let refused = || if errors.is_empty() { Ok(()) } else { Err(errors.into()) };
     if taken {
-        return Ok(());
+        return refused();
     }
     print(session, &check_text::check(&check));
     if let Some(mode) = machine.in_face().and_then(|(_, face)| face.face.as_ref()) {
@@ -163,7 +167,7 @@ fn alone(session: &Session, arguments: &CheckArguments, machine: &Machine) -> Re
     if !heads.is_empty() {
         print(session, &format!("further heads, see --head: {}\n", heads.join(", ")));
     }
-    Ok(())
+    refused()
 }
 
 /// What is written in polar interpolation of the control.

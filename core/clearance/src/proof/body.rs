@@ -51,11 +51,12 @@ impl Default for Rules {
 impl Rules {
     /// Distance that bodies of these kinds keep at feed and at rapid, mm.
     pub(super) fn keeps(&self, kinds: [BodyKind; 2]) -> [f64; 2] {
-        let keeps = match kinds {
-            // A rapid begins and ends as near to what is cut as the CL file has it.
-            [BodyKind::Cutter, BodyKind::Stock] | [BodyKind::Stock, BodyKind::Cutter] => [0.0; 2],
-            _ => [self.keep, self.rapid],
-        };
-        keeps.map(|keep| keep.max(ALLOWANCE))
+        let keep = if may_touch(kinds) { 0.0 } else { self.keep };
+        [keep, self.rapid].map(|keep| keep.max(ALLOWANCE))
     }
+}
+
+/// What cuts, and what is cut: at feed they touch, and a rapid begins and ends as near as the CL file has it.
+pub(super) fn may_touch(kinds: [BodyKind; 2]) -> bool {
+    kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock)
 }

@@ -155,16 +155,25 @@ fn given_shape(
     };
     let shape = Shape::new(pieces.iter().map(|piece| piece.placed(&placed)).collect());
     if shape.is_none() {
-        findings.push(unusable(&given.name, "it is farther than 100 m away", &given.place));
+        let why = ("it is farther than 100 m away", "coordinates are mm");
+        findings.push(unusable(&given.name, why, &given.place));
     }
     shape
 }
 
-pub(super) fn unusable(name: &str, why: &str, place: &Option<SourcePlace>) -> Diagnostic {
+/// A body cannot be used: why, and what helps.
+pub(super) fn unusable(
+    name: &str,
+    (why, help): (&str, &str),
+    place: &Option<SourcePlace>,
+) -> Diagnostic {
     Diagnostic::error("clearance-body", format!("the body {name} cannot be used: {why}"))
         .at(place.clone())
-        .help("nothing is proven of a body that is not there: coordinates are mm, files are STL")
+        .help(help)
 }
+
+/// What helps where a mesh is no solid.
+const AS_A_SOLID: &str = "let the CAD system write it again, as a solid";
 
 /// The shape in an STL file, its corners placed by `map`.
 fn mesh(
@@ -198,14 +207,14 @@ pub(super) fn closed_mesh(
     let MeshFaults { open, inverted, empty, .. } = shape.faults();
     if empty > 0 {
         let why = format!("{empty} of its parts enclose no volume: nothing is inside of them");
-        findings.push(unusable(name, &why, place));
+        findings.push(unusable(name, (&why, AS_A_SOLID), place));
         return None;
     }
     if open + inverted > 0 {
         let why = format!(
             "what is inside is known of closed surfaces alone, and {open} edges of its mesh are not those of two triangles, at {inverted} two do not agree what is outside"
         );
-        findings.push(unusable(name, &why, place));
+        findings.push(unusable(name, (&why, AS_A_SOLID), place));
         return None;
     }
     Some(triangles)
@@ -219,11 +228,12 @@ fn read_mesh(
     findings: &mut Vec<Diagnostic>,
 ) -> Option<(Vec<[Vector3<f64>; 3]>, Shape)> {
     let shown = path.display();
-    let mut refuse = |why: String| {
-        findings.push(unusable(name, &format!("{shown}: {why}"), place));
+    let mut refuse = |why: String, help: &str| {
+        findings.push(unusable(name, (&format!("{shown}: {why}"), help), place));
     };
     if !path.is_file() {
-        refuse("there is no such regular file".to_owned());
+        let help = "the path is that from the machine file";
+        refuse("there is no such regular file".to_owned(), help);
         return None;
     }
     let mut triangles = Vec::new();
@@ -252,7 +262,7 @@ fn read_mesh(
     match read {
         Ok(shape) => Some((triangles, shape)),
         Err(why) => {
-            refuse(why);
+            refuse(why, "an STL file, text or binary, in mm, as a CAD system exports it");
             None
         }
     }
@@ -270,6 +280,5 @@ fn mesh_fault(name: &str, faults: MeshFaults, place: &Option<SourcePlace>) -> Op
             "{name} is no closed surface: {open} edges are not those of two triangles, at {inverted} two do not agree what is outside; its surface counts, what is wholly inside it may be missed"
         ),
     };
-    let help = "let the CAD system write it again, as a solid";
-    Some(Diagnostic::warning("clearance-body", message).at(place.clone()).help(help))
+    Some(Diagnostic::warning("clearance-body", message).at(place.clone()).help(AS_A_SOLID))
 }

@@ -18,7 +18,7 @@ use crate::failure::Failure;
 /// Ways that are followed side by side: what is known of distances goes on along each.
 const MOST_TRACKS: usize = 6;
 
-/// Ways that may as well be others keep so much more than they have to, mm.
+/// Ways that may as well be others keep so much more than they have to, mm, and distances are told apart no closer for them.
 const COARSE: f64 = 0.5;
 
 /// Ways that are remembered: full turns of a rotary axis are nothing to bodies.
@@ -108,7 +108,8 @@ impl<'a> ChoiceBodies<'a> {
         let stances = ends.map(|joints| Stance { joints, pose: chain.forward(&joints) });
         let [from, to] = &stances;
         // Where axes turn the tip goes straight: by points that are put in, or because the control keeps it.
-        let straight = way.kind != TrialWayKind::Turn && turns(chain, [from, to]);
+        let off_part = matches!(way.kind, TrialWayKind::Turn | TrialWayKind::Across);
+        let straight = !off_part && turns(chain, [from, to]);
         let interpolation = match straight {
             true => Interpolation::Tip(Curve::Straight),
             false => Interpolation::Axes,
@@ -123,7 +124,6 @@ impl<'a> ChoiceBodies<'a> {
             independent,
         };
         // Where the tip goes in the part is the same whatever solution is taken, but for ways that the CL file does not have.
-        let off_part = way.kind == TrialWayKind::Turn;
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
             off_part || !(kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock))
@@ -131,7 +131,8 @@ impl<'a> ChoiceBodies<'a> {
         let track = self.track(&ends[0]);
         track.stands = ends[1];
         let before: Vec<u64> = track.proof.results().map(|result| result.faults).collect();
-        track.proof.take(&Move { way: way_of, rapid, line: 0 }, looks);
+        let beyond = (way.kind == TrialWayKind::Across).then_some(COARSE);
+        track.proof.take(&Move { way: way_of, rapid, line: 0, beyond }, looks);
         let mut results = track.proof.results().zip(before);
         let (hit, _) = results.find(|(result, before)| result.faults > *before)?;
         Some(hit.bodies.map(|place| track.proof.bodies()[place].name.clone()))

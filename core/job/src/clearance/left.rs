@@ -7,6 +7,7 @@ use post_clearance::piece::Way;
 use post_clearance::placement::Placement;
 use post_clearance::proof::{Body, BodyKind, Fault, Proof, Verdict};
 use post_clearance::shape::Shape;
+use post_machine::check::number as decimals;
 use post_machine::description::{GivenShape, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joint;
@@ -152,6 +153,8 @@ struct Held {
     watched: Watched,
     /// What it keeps from the stock at feed and at rapid, mm.
     keep: [f64; 2],
+    /// It does not, at rapid, where the motion begins or ends nearer.
+    yields: bool,
 }
 
 /// A part of a tool.
@@ -206,9 +209,11 @@ impl CutStock {
         let finest = Field::finest(size);
         if resolution < finest {
             let why = format!(
-                "[stock] resolution {resolution} mm is finer than there is room for: {finest:.3} mm for a stock of its size"
+                "[stock] resolution {resolution} mm is finer than there is room for with a stock of its size"
             );
-            findings.push(unusable("stock", &why, &given.place));
+            let fits = libm::ceil(finest * 1e3) / 1e3;
+            let help = format!("resolution = {} or more, mm", decimals(fits, 3));
+            findings.push(unusable("stock", (&why, &help), &given.place));
             return None;
         }
         let field = match (&given.shape, triangles) {
@@ -267,7 +272,7 @@ impl CutStock {
             let row = self.row(body.name.clone());
             let watched = Watched::of_pieces(mounted, body.shape.convex().to_vec());
             let keep = [rules.keep, rules.rapid];
-            self.others.push(Held { row, watched, keep });
+            self.others.push(Held { row, watched, keep, yields: false });
         }
     }
 
@@ -299,12 +304,14 @@ impl CutStock {
             let shape = Shape::turned(&profile, at_zero.tip, at_zero.axis);
             let rules = proof.rules([BodyKind::Stock, counted]);
             let (Some(rules), Some(shape)) = (rules, shape) else { continue };
-            let keep = if kind == PartKind::Holder { [rules.keep, rules.rapid] } else { [0.0; 2] };
+            let yields = kind != PartKind::Holder;
+            let keep = [if yields { 0.0 } else { rules.keep }, rules.rapid];
             let mounted = Mounted::new(&self.axes, self.frame, at_zero, shape.sphere());
             let row = self.row(format!("{what} T{number}"));
             let body = Cutter::vague(&profile);
             let watched = Watched::new(mounted.clone(), profile);
-            parts.push(Part { kind, held: Held { row, watched, keep }, body, mounted });
+            let held = Held { row, watched, keep, yields };
+            parts.push(Part { kind, held, body, mounted });
         }
         let cutter = Shape::turned(&edges, at_tip.tip, up).map(|shape| {
             let mounted = Mounted::new(&self.axes, self.frame, at_tip, shape.sphere());
@@ -452,9 +459,13 @@ impl CutStock {
 
     /// Holds a body against what is left on a way; whether it stays clear.
     fn stays_clear(&mut self, held: &mut Held, against: &Against<'_>, way: &Way<'_>) -> bool {
-        let Held { row, watched, keep } = held;
-        let keep = keep[usize::from(against.rapid)];
+        let Held { row, watched, keep, yields } = held;
+        let mut keep = keep[usize::from(against.rapid)];
         let (nearest, distances) = (watched.nearest(), watched.distances());
+        if *yields && keep > 0.0 && watched.is_nearer_at_an_end(&mut self.field, way, keep, WITHIN)
+        {
+            keep = 0.0;
+        }
         let found = watched.along(&mut self.field, way, keep, WITHIN);
         self.distances += watched.distances() - distances;
         let row = &mut self.rows[*row];

@@ -107,17 +107,12 @@ pub fn prove(
     hear: Option<&mut Hearer<'_>>,
 ) -> Result<ClearanceFound, Failure> {
     let machine = &control.machine;
-    let mut findings = names::unknown(machine);
-    let bodies = bodies::of_machine(machine, &mut findings);
+    let mut findings = Vec::new();
+    let (bodies, stock) = described(machine, &mut findings);
     let tools = facts.tools.iter();
     let diameters = tools.filter_map(|tool| Some((tool.number, tool.diameter?))).collect();
     let cuts = Cuts { diameters, fastest: facts.fastest };
     let mut run = ProgramRun::new(control.program_with_rapids(name, text)?);
-    let mut again = Vec::new();
-    let stock = left::CutStock::new(machine, &mut again);
-    // What is wrong with the body of the stock was said of it as a body.
-    again.retain(|finding| !findings.contains(finding));
-    findings.append(&mut again);
     let mut watch = ClearanceWatch::new(control, bodies, cuts, hear, stock);
     while let Some(done) = run.block() {
         for what in done.iter() {
@@ -145,6 +140,32 @@ pub fn prove(
     found.findings = findings;
     found.lacks.splice(0..0, without_body(machine));
     Ok(found)
+}
+
+/// The bodies of a machine and the stock that is cut, as they are proven. What is wrong with them is said, once.
+fn described(
+    machine: &Machine,
+    findings: &mut Vec<Diagnostic>,
+) -> (Vec<Body>, Option<left::CutStock>) {
+    findings.extend(names::unknown(machine));
+    let bodies = bodies::of_machine(machine, findings);
+    let mut again = Vec::new();
+    let stock = left::CutStock::new(machine, &mut again);
+    // What is wrong with the body of the stock was said of it as a body.
+    again.retain(|finding| !findings.contains(finding));
+    findings.append(&mut again);
+    (bodies, stock)
+}
+
+/// Ways between passes go past bodies: a part that nobody has drawn would be in no way's way.
+pub(crate) fn without_stock(machine: &Machine) -> Option<Diagnostic> {
+    if !machine.clearance.shortens_ways() || machine.stock.is_some() {
+        return None;
+    }
+    let message = "ways between passes are to be shortened ([clearance] low_retracts, link), and no [stock] is drawn: they would go through the part";
+    let help =
+        "[stock] block, cylinder or file: the part as it is clamped, in the frame of the part";
+    Some(Diagnostic::error("clearance-body", message).help(help))
 }
 
 /// The STL files of a machine's bodies, whether they are there or not.
@@ -194,8 +215,8 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
     if !is_described(machine) {
         return Vec::new();
     }
-    let mut findings = names::unknown(machine);
-    let all = bodies::of_machine(machine, &mut findings);
+    let mut findings: Vec<Diagnostic> = without_stock(machine).into_iter().collect();
+    let (all, _) = described(machine, &mut findings);
     let lacks = without_body(machine);
     if !lacks.is_empty() {
         let message = format!("nothing is proven of what has no body: {}", lacks.join(", "));

@@ -32,7 +32,7 @@ fn is_called(machine: &Machine, body: &Body, name: &str) -> bool {
     body.name == name || kind == name || end || link_name(machine, body.link) == name
 }
 
-/// Names of pairs in `[clearance]` that nothing has, and distances that are kept between no bodies.
+/// Names of pairs in `[clearance]` that nothing has: as a warning those of fixtures that are taken away.
 pub(super) fn unknown(machine: &Machine) -> Vec<Diagnostic> {
     let known = |name: &str| {
         let of_tool = name.strip_prefix("holder T").or_else(|| name.strip_prefix("cutter T"));
@@ -44,7 +44,16 @@ pub(super) fn unknown(machine: &Machine) -> Vec<Diagnostic> {
     let rules = &machine.clearance;
     let mut findings = Vec::new();
     for pair in rules.named() {
-        for name in pair.names.iter().filter(|name| !known(name)) {
+        if let Some(name) = &pair.taken_away {
+            let message = format!(
+                "{name} is taken away: what [clearance] says of the pair is without effect"
+            );
+            let help = "leave the pair out as well, if the fixture does not come back";
+            let warning = Diagnostic::warning("clearance-body", message).at(pair.place.clone());
+            findings.push(warning.help(help));
+        }
+        let names = pair.names.iter().filter(|name| pair.taken_away.as_ref() != Some(name));
+        for name in names.filter(|name| !known(name)) {
             let message = format!("[clearance] names {name}, and nothing is called so");
             let axes = machine.axes.iter().map(|axis| axis.name.as_str());
             let fixtures = machine.fixtures.iter().map(|body| body.name.as_str());
@@ -52,16 +61,6 @@ pub(super) fn unknown(machine: &Machine) -> Vec<Diagnostic> {
             let help = format!("known are {}; holder T3 is that of tool 3", all.join(", "));
             let finding = Diagnostic::error("clearance-body", message).at(pair.place.clone());
             findings.push(finding.help(help));
-        }
-    }
-    for pair in &rules.pairs {
-        let mut names = pair.between.names.iter();
-        let cutter = names.clone().any(|name| name == "cutter" || name.starts_with("cutter T"));
-        if cutter && names.any(|name| name == "stock") {
-            let message = "[clearance] pairs: no distance is kept between cutter and stock, at rapid they may not touch and at feed they may";
-            let help = "leave the pair out, or a fixture in the place of the stock";
-            let place = pair.between.place.clone();
-            findings.push(Diagnostic::error("clearance-body", message).at(place).help(help));
         }
     }
     findings

@@ -1,4 +1,4 @@
-//! Whether holder, cutter and length of a tool fit together.
+//! Whether holder, cutter, edge and length of a tool fit together, and whether they are there.
 
 use post_machine::check::number as decimals;
 use post_machine::description::{Machine, ToolOutline};
@@ -9,10 +9,50 @@ const MEET: f64 = 1e-6;
 
 /// What does not fit of the tools of a machine.
 pub(super) fn of_tools(machine: &Machine) -> Vec<Diagnostic> {
-    machine.outlines.iter().flat_map(|outline| of_tool(machine, outline)).collect()
+    let outlines = machine.outlines.iter();
+    outlines
+        .flat_map(|outline| [lacking(machine, outline), unfit(machine, outline)].concat())
+        .collect()
 }
 
-fn of_tool(machine: &Machine, outline: &ToolOutline) -> Vec<Diagnostic> {
+/// What of a tool is not there that the rest of it asks for.
+fn lacking(machine: &Machine, outline: &ToolOutline) -> Vec<Diagnostic> {
+    let number = outline.number;
+    let drawn = !outline.cutter.is_empty();
+    let listed = || machine.tool_table.as_ref()?.entry(number, number)?.total_length();
+    let given = machine.tools.iter().any(|(known, _)| *known == number);
+    let cut = machine.stock.as_ref().is_some_and(|stock| stock.cut.is_some());
+    let mut findings = Vec::new();
+    let mut tell = |message: String, help: &str| {
+        findings.push(Diagnostic::warning("clearance-body", message).help(help));
+    };
+    if !given && listed().is_none() {
+        tell(
+            format!(
+                "how long tool {number} is the machine file does not say: where its holder and cutter are is not known"
+            ),
+            "length = … under [tools.N]; else --offsets or --tool-length with each program",
+        );
+    }
+    if outline.edge.is_some() && !drawn {
+        tell(
+            format!("edge of tool {number} has no effect: its cutter is not drawn"),
+            "cutter = [[z, r], …] under [tools.N] draws it",
+        );
+    }
+    if cut && outline.edge.is_none() && drawn {
+        tell(
+            format!(
+                "all of the cutter of tool {number} cuts, up to its last point: no shank is held against the stock"
+            ),
+            "edge = … under [tools.N]: mm above the tip up to which it cuts",
+        );
+    }
+    findings
+}
+
+/// What of a tool does not fit together.
+fn unfit(machine: &Machine, outline: &ToolOutline) -> Vec<Diagnostic> {
     let ToolOutline { number, holder, cutter, edge } = outline;
     let top = |points: &[[f64; 2]]| points.iter().map(|[z, _]| *z).reduce(f64::max);
     let length = machine.tools.iter().find(|(known, _)| known == number).map(|(_, length)| *length);

@@ -225,9 +225,10 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         let line = motion.line;
         let mut nearest = None;
         for way in ways.iter().copied() {
-            self.proof.take(&Move { way, rapid, line }, looks);
+            let motion = Move { way, rapid, line, beyond: None };
+            self.proof.take(&motion, looks);
             if let Some((_, proof)) = &mut self.told {
-                let distance = proof.closest(&Move { way, rapid, line }, looks);
+                let distance = proof.closest(&motion, looks);
                 nearest = distance.into_iter().chain(nearest).reduce(f64::min);
             }
         }
@@ -419,7 +420,11 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
         found.pairs = self.rows.into_values().collect();
         if found.pairs.is_empty() {
-            let message = "no two bodies move against one another: nothing is proven".to_owned();
+            let by = match self.control.machine.clearance.shortens_ways() {
+                true => ", and [clearance] low_retracts or link asks for it",
+                false => "",
+            };
+            let message = format!("no two bodies move against one another: nothing is proven{by}");
             let help =
                 "[solids], [fixture.NAME], [stock] and [tools.N] of the machine file have bodies";
             found.findings.push(Diagnostic::error("clearance-body", message).help(help));

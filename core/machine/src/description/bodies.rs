@@ -13,7 +13,7 @@ use super::keys::axes_are;
 use super::quantity::KeyedNumber;
 use super::solids::link_of;
 use super::table::{keys, words};
-use crate::diagnostic::SourcePlace;
+use crate::diagnostic::{Short, SourcePlace};
 
 const KEPT: Bounds = Bounds {
     table: "[clearance] ",
@@ -89,7 +89,8 @@ keys! {
         /// Between two positions of one tool it is retracted only as high as the way across is proven clear, and no program is
         /// written that is not proven clear: the part must sit where `[workpiece] mount` says.
         low_retracts: bool = Bounds::OFF,
-        /// As `low_retracts`, and the way across goes past bodies where that is quicker than over them.
+        /// As `low_retracts`, and the way across goes past bodies where that is quicker than over them; rapids of the CL file
+        /// between two cuts that point the tool alike go across as low as it is proven clear.
         link: bool = Bounds::OFF,
     }
 }
@@ -101,7 +102,7 @@ keys! {
         between: [Spanned<String>; 2],
         /// Distance that they keep at feed, mm; that of `[clearance]` if not said.
         keep: Option<KeyedNumber> = KEPT,
-        /// Distance that they keep at rapid, mm; that at feed if not said.
+        /// Distance that they keep at rapid, mm; that at feed if not said. Cutter and stock take this alone.
         rapid: Option<KeyedNumber> = KEPT,
     }
 }
@@ -198,6 +199,8 @@ pub struct BodyPair {
     pub names: [String; 2],
     /// Where the machine file has them.
     pub place: Option<SourcePlace>,
+    /// The one of them that is taken away with an empty `file`.
+    pub taken_away: Option<String>,
 }
 
 /// Two bodies that keep another distance than all others.
@@ -331,14 +334,24 @@ impl Builder<'_> {
         Some(GivenBody { name: name.to_owned(), link, shape, place, cut: None })
     }
 
-    /// What is to be kept.
-    pub(super) fn clearance(&mut self, file: &ClearanceFile) -> ClearanceRules {
+    /// What is to be kept; pairs may name fixtures that are taken away.
+    pub(super) fn clearance(
+        &mut self,
+        file: &ClearanceFile,
+        fixtures: &BTreeMap<Spanned<String>, Spanned<BodyFile>>,
+    ) -> ClearanceRules {
+        let gone = fixtures.iter().filter(|(_, body)| {
+            body.get_ref().file.as_ref().is_some_and(|file| file.get_ref().is_empty())
+        });
+        let gone: Vec<&str> = gone.map(|(name, _)| name.get_ref().as_str()).collect();
         let keep = self.checked(&file.keep).unwrap_or(0.0);
         let mut pairs = Vec::with_capacity(file.pairs.len());
         for pair in &file.pairs {
-            let kept = self.checked(&pair.keep).unwrap_or(keep);
+            let kept = self.checked(&pair.keep);
+            self.check_cutter_and_stock(pair, kept);
+            let kept = kept.unwrap_or(keep);
             pairs.push(KeptPair {
-                between: self.body_pair(&pair.between),
+                between: self.body_pair(&pair.between, &gone),
                 keep: kept,
                 rapid: self.checked(&pair.rapid).unwrap_or(kept),
             });
@@ -346,7 +359,7 @@ impl Builder<'_> {
         ClearanceRules {
             keep,
             rapid: self.checked(&file.rapid).unwrap_or(keep),
-            ignore: file.ignore.iter().map(|pair| self.body_pair(pair)).collect(),
+            ignore: file.ignore.iter().map(|pair| self.body_pair(pair, &gone)).collect(),
             pairs,
             rapid_axes: file.rapid_axes,
             choose: file.choose,
@@ -355,21 +368,79 @@ impl Builder<'_> {
         }
     }
 
-    fn body_pair(&self, [one, other]: &[Spanned<String>; 2]) -> BodyPair {
-        BodyPair {
-            names: [one, other].map(|name| name.get_ref().clone()),
-            place: self.sources.place(one.span().start..other.span().end),
+    /// At feed the cutter is in the stock: there is a distance at rapid alone.
+    fn check_cutter_and_stock(&mut self, pair: &ClearancePairFile, keep: Option<f64>) {
+        let mut names = pair.between.iter().map(|name| name.get_ref().as_str());
+        let cutter = names.clone().any(|name| name == "cutter" || name.starts_with("cutter T"));
+        if let Some(given) = pair.keep.as_ref().filter(|_| keep.is_some_and(|keep| keep > 0.0))
+            && cutter
+            && names.any(|name| name == "stock")
+        {
+            let message = "[clearance] pairs: cutter and stock keep no distance at feed".to_owned();
+            let help = "rapid = in the place of keep =: what they keep at rapid";
+            self.fault("machine-body", given.span(), message, help);
         }
     }
 
-    /// The points of a profile; its radii are no less than zero.
-    pub(super) fn profile(&mut self, what: &str, points: &[[KeyedNumber; 2]]) -> Vec<[f64; 2]> {
-        let mut profile = Vec::with_capacity(points.len());
+    fn body_pair(&self, [one, other]: &[Spanned<String>; 2], gone: &[&str]) -> BodyPair {
+        let names = [one, other].map(|name| name.get_ref().clone());
+        let taken_away = names.iter().find(|name| gone.contains(&name.as_str())).cloned();
+        let place = self.sources.place(one.span().start..other.span().end);
+        BodyPair { names, place, taken_away }
+    }
+
+    /// The points of a cutter: they begin at the tip.
+    pub(super) fn cutter(&mut self, what: &str, points: &[[KeyedNumber; 2]]) -> Vec<[f64; 2]> {
+        let profile = self.profile(what, points);
+        if let ([[z, _], ..], Some([begins, _])) = (points, profile.first())
+            && *begins != 0.0
+        {
+            let (way, side) =
+                (Short(libm::fabs(*begins)), if *begins > 0.0 { "above" } else { "below" });
+            let message = format!("{what} begins {way} mm {side} its tip");
+            self.fault(
+                "machine-body",
+                z.span(),
+                message,
+                "z counts from the tip up: the first point is [0, r]",
+            );
+        }
+        profile
+    }
+
+    /// The points of a holder: they go down from the gauge point.
+    pub(super) fn holder(&mut self, what: &str, points: &[[KeyedNumber; 2]]) -> Vec<[f64; 2]> {
+        let profile = self.profile(what, points);
+        if let ([.., [z, _]], Some([ends, _])) = (points, profile.last())
+            && *ends <= 0.0
+        {
+            let message = format!(
+                "{what} ends at z = {} mm: no part of it is below the gauge point",
+                Short(*ends)
+            );
+            self.fault(
+                "machine-body",
+                z.span(),
+                message,
+                "z counts from the gauge point down, towards the tip",
+            );
+        }
+        profile
+    }
+
+    /// The points of a profile, in the order of z; its radii are no less than zero.
+    fn profile(&mut self, what: &str, points: &[[KeyedNumber; 2]]) -> Vec<[f64; 2]> {
+        let mut profile: Vec<[f64; 2]> = Vec::with_capacity(points.len());
         for [z, r] in points {
             let [along, radius] = [z, r].map(|number| self.number(number));
             if radius < 0.0 {
                 let message = format!("{what} has the radius {radius} mm, below zero");
                 self.fault("machine-body", r.span(), message, "points are [z, r]");
+            }
+            if let Some([before, _]) = profile.last().filter(|[before, _]| along < *before) {
+                let message =
+                    format!("{what} goes back, from z = {} to {} mm", Short(*before), Short(along));
+                self.fault("machine-body", z.span(), message, "points [z, r] in the order of z");
             }
             profile.push([along, radius]);
         }

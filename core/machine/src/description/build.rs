@@ -348,7 +348,7 @@ impl Builder<'_> {
         let fixtures = self.fixtures(&file.fixture, &axes);
         let stock = self.stock(file.stock.as_ref());
         let outlines = self.tool_outlines(&file.tools);
-        let clearance = self.clearance(&file.clearance);
+        let clearance = self.clearance(&file.clearance, &file.fixture);
         let motion = self.motion(&file.motion);
         let plan = self.plan(&file.plan, &motion, own.accuracy.tolerance);
         let unused = |section: &'static str, tables: BTreeMap<String, Vec<GivenOption>>| {

@@ -237,8 +237,8 @@ impl Builder<'_> {
         for (number, outline) in &file.outlines {
             let ToolOutlineFile { holder, cutter, edge, .. } = outline.get_ref();
             let edge = self.checked(edge);
-            let holder = self.profile(&format!("the holder of tool {number}"), holder);
-            let cutter = self.profile(&format!("the cutter of tool {number}"), cutter);
+            let holder = self.holder(&format!("the holder of tool {number}"), holder);
+            let cutter = self.cutter(&format!("the cutter of tool {number}"), cutter);
             match number.parse() {
                 Ok(number) => outlines.push(ToolOutline { number, holder, cutter, edge }),
                 Err(_) => {

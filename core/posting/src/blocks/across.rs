@@ -32,6 +32,9 @@ const WORTH: f64 = 1.0;
 /// How far the tool is drawn back to where a way past bodies begins and ends, mm: the first that is clear.
 const DRAWN_BACK: [f64; 7] = [0.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 
+/// The place of a way over a height that is over the first position, or that position itself.
+const OVER: usize = 3;
+
 /// Rotary axes of a way past bodies stand on whole numbers of these, degrees.
 const TURN_STEP: f64 = 0.1;
 
@@ -108,23 +111,34 @@ impl Trials<'_> {
         self.bodies.contact(&TrialWay { solver: self.solver, ends: [from, to], kind })
     }
 
-    /// What a way that begins where the tool departs does not stay clear of. Off the part, as it stands, nothing is left to
-    /// hit with the cutter where the cut has been.
-    fn contact(&mut self, places: &[Joints]) -> Option<Contact> {
-        let kinds = [TrialWayKind::Rapid].into_iter().chain(std::iter::repeat(TrialWayKind::Turn));
+    /// What a way that begins where the tool departs does not stay clear of; it goes on as ways of this kind. Off the part,
+    /// as it stands, nothing is left to hit with the cutter where the cut has been.
+    fn contact(&mut self, places: &[Joints], kind: TrialWayKind) -> Option<Contact> {
+        let kinds = [TrialWayKind::Rapid].into_iter().chain(std::iter::repeat(kind));
         let mut ways = places.windows(2).zip(kinds).filter(|(ends, _)| ends[0] != ends[1]);
         ways.find_map(|(ends, kind)| self.contact_of(&ends[0], &ends[1], kind))
     }
 
-    /// Nothing is hit on a way between two passes.
-    fn goes(&mut self, places: &[Joints]) -> bool {
-        let mut ways = places.windows(2).filter(|ends| ends[0] != ends[1]);
-        ways.all(|ends| self.contact_of(&ends[0], &ends[1], TrialWayKind::Turn).is_none())
+    /// What a way does not stay clear of that is chosen here, from where the tool departs to the first position: how near it
+    /// comes to the part at that, along its last piece, is up to the CL file.
+    fn own_contact(&mut self, places: &[Joints]) -> Option<Contact> {
+        let across = self.contact(&places[..=OVER], TrialWayKind::Across);
+        across.or_else(|| self.comes_down(&places[OVER..]))
     }
 
-    /// Nothing is hit at a place between two passes.
-    fn stands(&mut self, at: &Joints) -> bool {
-        self.contact_of(at, at, TrialWayKind::Turn).is_none()
+    /// What the tool does not stay clear of on its way from over a first position to it.
+    fn comes_down(&mut self, places: &[Joints]) -> Option<Contact> {
+        let last = places.len().saturating_sub(2);
+        let mut ways = places.windows(2).enumerate().filter(|(_, ends)| ends[0] != ends[1]);
+        ways.find_map(|(place, ends)| {
+            let kind = if place == last { TrialWayKind::Turn } else { TrialWayKind::Across };
+            self.contact_of(&ends[0], &ends[1], kind)
+        })
+    }
+
+    /// Nothing is hit on a piece of a way that is chosen here, or at a place of it.
+    fn goes(&mut self, from: &Joints, to: &Joints) -> bool {
+        self.contact_of(from, to, TrialWayKind::Across).is_none()
     }
 
     /// The time of a way from rest to rest at each place, s.
@@ -294,8 +308,9 @@ impl<'a> BlockStage<'a> {
         let ever = self.over(crossing, crossing.highest);
         let seconds = trials.seconds(&ever);
         let low = self.low_way(&mut trials, crossing);
-        let low = low.filter(|low| low.seconds < seconds || trials.contact(&ever).is_some());
-        let blocked = if low.is_some() { None } else { trials.contact(&ever) };
+        let mut hits = || trials.contact(&ever, TrialWayKind::Turn);
+        let low = low.filter(|low| low.seconds < seconds || hits().is_some());
+        let blocked = if low.is_some() { None } else { hits() };
         let than = match (&low, &blocked) {
             (Some(low), _) => low.seconds,
             (None, Some(_)) => f64::INFINITY,
@@ -374,7 +389,7 @@ impl<'a> BlockStage<'a> {
             }
             let at = highest + (height * step * up - axis.reading(highest));
             let places = self.over(crossing, at);
-            if trials.contact(&places).is_none() {
+            if trials.own_contact(&places).is_none() {
                 let way = WayAcross { retract: (depth, at), through: Vec::new() };
                 best = Some(Candidate { way, entry: at, seconds: trials.seconds(&places) });
                 high = height - 1.0;
@@ -392,12 +407,16 @@ impl<'a> BlockStage<'a> {
         let left = DRAWN_BACK.iter().find_map(|by| {
             let mut left = *from;
             left[depth] = crossing.drawn_back(from[depth], *by)?;
-            (trials.stands(&left) && trials.contact(&[*from, left]).is_none()).then_some(left)
+            let leaves = trials.goes(&left, &left)
+                && trials.contact(&[*from, left], TrialWayKind::Across).is_none();
+            leaves.then_some(left)
         })?;
         let (entry, approach) = DRAWN_BACK.iter().find_map(|by| {
             let height = crossing.drawn_back(node.trace.joints[depth], *by)?;
             let approach = self.approach(crossing, height);
-            (trials.stands(&approach[0]) && trials.goes(&approach)).then_some((height, approach))
+            let comes =
+                trials.goes(&approach[0], &approach[0]) && trials.comes_down(&approach).is_none();
+            comes.then_some((height, approach))
         })?;
         let ends = [&left, &approach[0]];
         let room = Room::new(self.machine, ends, (depth, highest));
@@ -416,7 +435,7 @@ impl<'a> BlockStage<'a> {
             printed: &printed,
             seconds: &|ends| drives.rest_to_rest(ends[0], ends[1], 1.0, |_| true),
         };
-        let found = way.find(ends, &mut |from, to| trials.goes(&[*from, *to]))?;
+        let found = way.find(ends, &mut |from, to| from == to || trials.goes(from, to))?;
         let all = [from].into_iter().chain(&found).chain(&approach[1..]);
         let seconds = trials.seconds(&all.copied().collect::<Vec<_>>());
         let way = WayAcross { retract: (depth, left[depth]), through: found[1..].to_vec() };

@@ -35,6 +35,8 @@ pub enum TrialWayKind {
     Rapid,
     /// At rapid, as far as each axis goes, off the part: the rotary ones while the tool is retracted.
     Turn,
+    /// The same where it might as well go elsewhere: it keeps off the part too, and half a millimetre more than has to be.
+    Across,
 }
 
 /// A way of the axes.

@@ -35,6 +35,7 @@ use files::LeftByFile;
 use frames::millimetres;
 use modal::{FileCompensation, FileCycles, FileSpindle, FileTools};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
+use readiness::{EndAxis, ONE_AXIS};
 use turned::ArcAxisConvention;
 use words::SuspectRecord;
 
@@ -68,8 +69,10 @@ pub struct ClInterpreter {
     told_axis: Option<Vector3<f64>>,
     /// An index move came since the last move: see whether it agrees with `TLAXIS`.
     check_axis: bool,
-    /// The tool axis of the operation before the one that has not moved yet, unit vector, part frame.
-    axis_before: Option<Vector3<f64>>,
+    /// How the operation ended before the one that has not moved yet.
+    axis_before: Option<EndAxis>,
+    /// The tool axis with which the operation began to move, unit vector, part frame.
+    begun_with: Option<Vector3<f64>>,
     /// Last point, mm, frame of the file.
     tip: Option<Vector3<f64>>,
     rapid: bool,
@@ -168,6 +171,7 @@ impl ClInterpreter {
             told_axis: None,
             check_axis: false,
             axis_before: None,
+            begun_with: None,
             tip: None,
             rapid: false,
             rapid_feed: false,
@@ -382,9 +386,12 @@ impl ClInterpreter {
     ) {
         self.end_spline(record, emit);
         if self.tip.is_some() {
-            self.axis_before.get_or_insert(self.frame.direction_to_part(self.axis));
-            self.due = true;
+            let axis = self.frame.direction_to_part(self.axis);
+            let begun = self.begun_with.take();
+            let positions = begun.is_some_and(|begun| (begun - axis).norm() < ONE_AXIS);
+            self.axis_before.get_or_insert(EndAxis { axis, positions });
         }
+        self.due = true;
         // Every path of NX stands by itself: its first GOTO gives the axis if it is not Z.
         self.axis = Vector3::z();
         self.tools.name = as_remark(tool.unwrap_or_default().to_owned());

@@ -12,6 +12,18 @@ use crate::program::{Command, ProgramStep};
 /// Tool axes farther apart are those of two faces of the part, radians: half of what is between two sides of a block.
 const OTHER_FACE: f64 = FRAC_PI_4;
 
+/// Unit vectors that differ by less are one tool axis.
+pub(super) const ONE_AXIS: f64 = 1e-3;
+
+/// How an operation ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EndAxis {
+    /// The tool axis, unit vector, part frame.
+    pub axis: Vector3<f64>,
+    /// It began with the same: the rotary axes are positioned (3+2), and no way of the CAM system turns them.
+    pub positions: bool,
+}
+
 impl ClInterpreter {
     /// What is to be seen to before a move: the axis after an index move, the tool that the user names, a
     /// cutter without a tool, the speed that the user names.
@@ -53,19 +65,28 @@ impl ClInterpreter {
                 sense: self.spindle.sense,
             })));
         }
-        if let Some(axis) = self.axis_before.take() {
-            self.turn_over(axis, emit);
+        if let Some(before) = self.axis_before.take() {
+            self.turn_over(before, emit);
+        }
+        if self.begun_with.is_none() {
+            self.begun_with = Some(self.frame.direction_to_part(self.axis));
         }
         self.due = false;
     }
 
     /// The first move of an operation: where it comes at rapid to another face of the part, the way of the CAM system
-    /// between the two is none that a tool could go, and the tool is retracted first. `axis` is that of the operation
-    /// before, part frame.
-    fn turn_over(&self, axis: Vector3<f64>, emit: &mut StepSink<'_>) {
+    /// between the two is none that a tool could go, and the tool is retracted first; behind one whose axis stood all the
+    /// time, which a system leads away from its own face alone, wherever the axis is another one. `before` is how the
+    /// operation before ended.
+    fn turn_over(&self, before: EndAxis, emit: &mut StepSink<'_>) {
+        let EndAxis { axis, positions } = before;
         let next = self.frame.direction_to_part(self.axis);
         let rapid = self.rapid || self.rapid_feed || self.cycles.in_force.is_some();
-        if rapid && self.tip.is_some() && axis.dot(&next) < libm::cos(OTHER_FACE) {
+        let other_face = match positions {
+            true => (axis - next).norm() > ONE_AXIS,
+            false => axis.dot(&next) < libm::cos(OTHER_FACE),
+        };
+        if rapid && self.tip.is_some() && other_face {
             emit(ProgramStep::Command(Command::Leave));
         }
     }

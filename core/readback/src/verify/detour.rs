@@ -82,6 +82,8 @@ pub(super) struct StrayRapid {
     pub axis: usize,
     pub by: f64,
     pub kind: StrayKind,
+    /// It goes to positions of the machine.
+    pub machine: bool,
 }
 
 impl Detour {
@@ -212,6 +214,7 @@ impl RapidEnd {
             axis,
             by: turned / machine.axes[axis].unit(),
             kind: StrayKind::Turns,
+            machine: self.machine,
         })
     }
 
@@ -286,6 +289,7 @@ impl RapidEnd {
                     axis: place,
                     by: by / axis.unit(),
                     kind,
+                    machine: self.machine,
                 };
                 worst = Some((by / slack, astray));
             }

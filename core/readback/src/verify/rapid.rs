@@ -255,7 +255,7 @@ impl<C: Course> Verifier<'_, C> {
             false => " mm",
         };
         let (name, by) = (&axis.name, astray.by);
-        let message = match astray.kind {
+        let mut message = match astray.kind {
             StrayKind::Short => {
                 format!("a retract ends {by:.3}{unit} short of where the machine file has {name}")
             }
@@ -266,6 +266,9 @@ impl<C: Course> Verifier<'_, C> {
                 "{name} turns by {by:.3}{unit} off the ways of the CL file, and the tool is not retracted"
             ),
         };
+        if own && astray.machine && !self.machine.clearance.shortens_ways() {
+            message.push_str("; a program that was posted with [clearance] low_retracts or link is verified with it");
+        }
         let place = Some(BlockPlace { line: astray.line, number: astray.number });
         self.fault_at("rapid", message, place, None, Some(by));
     }

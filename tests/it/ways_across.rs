@@ -210,6 +210,74 @@ fn walls_anywhere_are_kept_clear_of_or_refused() {
     assert!(past > 0);
 }
 
+/// Ways that are chosen here keep half a millimetre more than they have to, from the part too, wherever they begin and end.
+#[test]
+fn ways_of_its_own_keep_off_the_part() {
+    let (rounds, mut rng) = randomised(9, 89);
+    for _ in rounds {
+        let folder = walled([[-10.0, -290.0, 65.0], [10.0, 290.0, rng.range(70.0, 200.0)]]);
+        let stock = format!("stock.block=[[-20,-60,0],[20,60,{:.1}]]", rng.range(60.0, 140.0));
+        let keep = rng.range(0.6, 6.0);
+        for option in [LOW, LINK] {
+            let rapid = format!("clearance.rapid={keep:.2}");
+            let more = ["--set", stock.as_str(), "--set", rapid.as_str()];
+            made(&folder, "sides.cls", &[&option[..], &more].concat());
+            let rapid = format!("clearance.rapid={:.2}", keep + 0.48);
+            let words = ["clearance", "f.nc", "-m", "m.toml", "--set", &stock, "--set", &rapid];
+            let proof = post_in(folder.path(), &words);
+            assert_eq!(proof.code, 0, "{keep} {stock} {}{}", proof.out, proof.err);
+        }
+    }
+}
+
+/// Rapids between two cuts of one orientation go no higher than the part asks for; the program is the same but for them.
+#[test]
+fn rapids_of_one_orientation_are_as_low_as_the_part_lets_them() {
+    let sample = root().join(sample("s-piece.cls"));
+    let sample = sample.to_str().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let machine = |high: f64| {
+        let text = format!(
+            "extends = \"ac-trunnion\"\nname = \"with a part\"\n[stock]\nblock = [[-60, -20, 0], [60, 20, {high}]]\n\
+             [tools.1]\nlength = 100\nholder = [[0, 30], [40, 20]]\ncutter = [[0, 5], [50, 5]]\n\
+             [clearance]\nrapid_axes = \"together\"\nrapid = 2\n"
+        );
+        fs::write(folder.path().join("m.toml"), text).unwrap();
+    };
+    let mut before = f64::INFINITY;
+    for high in [20.0, 40.0, 60.0] {
+        machine(high);
+        let (ever, _) = made(&folder, sample, &[]);
+        let (low, summary) = made(&folder, sample, &LINK);
+        let ways = &summary["ways_across"];
+        assert_eq!((&ways["rapids"], &ways["past"]), (&1.into(), &0.into()), "{ways}");
+        let saved = ways["saved_s"].as_f64().unwrap();
+        assert!(saved > 0.0 && saved < before, "{high}: {ways}");
+        before = saved;
+        let cuts = |program: &str| -> Vec<String> {
+            let lines = program.lines().filter(|line| line.contains('X') && !line.contains("G0"));
+            lines.map(str::to_owned).collect()
+        };
+        assert_eq!(cuts(&ever).len(), cuts(&low).len());
+        let (ever, low) = (ever.lines().count(), low.lines().count());
+        assert!(low <= ever, "{low} {ever}");
+    }
+}
+
+/// A linked program that is verified without the option is told from one that goes astray.
+#[test]
+fn verifying_tells_a_linked_program_where_the_machine_file_links_nothing() {
+    let folder = walled([[-10.0, -60.0, 65.0], [10.0, 60.0, 330.0]]);
+    made(&folder, "sides.cls", &LINK);
+    let words = ["verify", "f.nc", "-m", "m.toml", "--against", "sides.cls", "--posted"];
+    let held = post_in(folder.path(), &words);
+    assert_eq!(held.code, 1, "{}", held.out);
+    assert_contains(
+        &held.err,
+        &["a rapid takes", "posted with [clearance] low_retracts or link is verified with it"],
+    );
+}
+
 /// Ways past bodies would go through a part that nobody has drawn.
 #[test]
 fn without_a_stock_no_way_is_shortened() {
@@ -222,5 +290,44 @@ fn without_a_stock_no_way_is_shortened() {
         assert_eq!(run.code, 1, "{}", run.err);
         assert_contains(&run.err, &["no [stock] is drawn"]);
         assert!(!folder.path().join("part.nc").exists());
+    }
+}
+
+/// Behind an operation whose tool axis stands the tool is retracted before it comes to another axis, however near; behind one
+/// that turns it the way is that of the CAM system up to 45°.
+#[test]
+fn the_tool_is_retracted_between_two_orientations() {
+    let folder = tempfile::tempdir().unwrap();
+    let operation = |[from, to]: [f64; 2]| {
+        let at = |x: f64, out: f64, angle: f64| {
+            let (sine, cosine) = libm::sincos(angle.to_radians());
+            let (y, z) = (0.0, 40.0 + out * cosine);
+            format!("GOTO/{:.4},{y},{z:.4},{sine:.7},0,{cosine:.7}\n", x + out * sine)
+        };
+        format!(
+            "TOOL PATH/A,TOOL,M\nTLDATA/MILL,10,0,100,0,0\nLOAD/TOOL,3\nSPINDL/RPM,6000,CLW\nRAPID\n{}\
+             RAPID\n{}FEDRAT/MMPM,800\n{}RAPID\n{}END-OF-PATH\n",
+            at(-40.0, 30.0, from),
+            at(-40.0, 2.0, from),
+            at(40.0, 2.0, to),
+            at(40.0, 30.0, to)
+        )
+    };
+    for (first, second, retracted) in [
+        ([0.0, 0.0], [0.0, 0.0], 2),
+        ([0.0, 0.0], [1.0, 1.0], 3),
+        ([0.0, 0.0], [35.0, 35.0], 3),
+        ([20.0, 20.0], [20.0, 40.0], 2),
+        ([10.0, 0.0], [35.0, 35.0], 2),
+        ([10.0, 0.0], [50.0, 50.0], 3),
+    ] {
+        fs::write(folder.path().join("a.cls"), operation(first) + &operation(second)).unwrap();
+        let words = ["-m", "xyzbc-trt", "a.cls", "-o", "a.ngc", "-q", "--verify"];
+        let more = ["--tool-length", "40", "--mount", "0,0,-80"];
+        let run = post_in(folder.path(), &[&words[..], &more].concat());
+        assert_eq!(run.code, 0, "{}", run.err);
+        let program = fs::read_to_string(folder.path().join("a.ngc")).unwrap();
+        let found = program.matches("G53 G0 Z").count();
+        assert_eq!(found, retracted, "{first:?} {second:?}: {program}");
     }
 }

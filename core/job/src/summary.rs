@@ -221,13 +221,16 @@ fn solutions(report: &PostingReport) -> Option<String> {
 
 /// Ways between passes that go as bodies leave them; none where there are none.
 fn ways_across(ways: &WaysAcross) -> Option<String> {
-    let kinds =
-        [(ways.low, "over a lower retract"), (ways.past, "past bodies"), (ways.as_ever, "as ever")];
+    let kinds = [
+        (ways.low, "over a lower retract"),
+        (ways.past, "past bodies"),
+        (ways.rapids, "lower between cuts"),
+        (ways.as_ever, "as ever"),
+    ];
     let kinds = kinds.into_iter().filter(|(count, _)| *count > 0);
     let kinds: Vec<String> = kinds.map(|(count, how)| format!("{count} {how}")).collect();
     let saved = number(ways.saved_s, 1);
-    (!kinds.is_empty())
-        .then(|| format!("{}; {saved} s less than over the retract", kinds.join(", ")))
+    (!kinds.is_empty()).then(|| format!("{}; {saved} s less than as ever", kinds.join(", ")))
 }
 
 /// How long the program takes, and blocks that are slower than asked for.

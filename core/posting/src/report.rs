@@ -141,6 +141,8 @@ pub struct WaysAcross {
     pub low: u64,
     /// Past bodies.
     pub past: u64,
+    /// Runs of rapids between two cuts of one orientation that are lower than in the CL file.
+    pub rapids: u64,
     /// Over the machine file's retract: no quicker one was proven clear.
     pub as_ever: u64,
     /// What the others save, s, each of their pieces from rest to rest.

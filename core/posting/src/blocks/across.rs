@@ -74,7 +74,7 @@ struct Candidate {
 }
 
 /// Whether ways are clear, for one tool.
-struct Trials<'t> {
+pub(super) struct Trials<'t> {
     bodies: &'t mut dyn BodyClearance,
     solver: &'t Solver,
     drives: &'t DriveLimits,
@@ -137,12 +137,12 @@ impl Trials<'_> {
     }
 
     /// Nothing is hit on a piece of a way that is chosen here, or at a place of it.
-    fn goes(&mut self, from: &Joints, to: &Joints) -> bool {
+    pub(super) fn goes(&mut self, from: &Joints, to: &Joints) -> bool {
         self.contact_of(from, to, TrialWayKind::Across).is_none()
     }
 
     /// The time of a way from rest to rest at each place, s.
-    fn seconds(&self, places: &[Joints]) -> f64 {
+    pub(super) fn seconds(&self, places: &[Joints]) -> f64 {
         let ways = places.windows(2);
         ways.map(|ends| self.drives.rest_to_rest(&ends[0], &ends[1], 1.0, |_| true)).sum()
     }
@@ -166,6 +166,30 @@ impl<'a> AcrossChoice<'a> {
     /// What came of it.
     pub(super) fn found(&self) -> WaysAcross {
         self.found
+    }
+
+    /// Ways past bodies are looked for, and rapids between cuts may go lower.
+    pub(super) fn links(&self) -> bool {
+        self.links
+    }
+
+    /// Whether ways are clear for the tool in the spindle; none where it is not known how long it is.
+    pub(super) fn trials<'t>(
+        &'t mut self,
+        machine: &Machine,
+        solver: &'t Solver,
+    ) -> Option<Trials<'t>> {
+        self.equip(machine, solver).then(|| Trials {
+            bodies: &mut *self.bodies,
+            solver,
+            drives: &self.drives,
+        })
+    }
+
+    /// Rapids between two cuts go lower, and take so much less time, s.
+    pub(super) fn lowered(&mut self, saves: f64) {
+        self.found.rapids += 1;
+        self.found.saved_s += saves;
     }
 
     /// The tool has departed from `joints`.

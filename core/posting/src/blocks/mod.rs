@@ -10,6 +10,7 @@ mod cutter;
 mod drives;
 mod fitted;
 mod free_way;
+mod low_rapids;
 mod nominal;
 mod off_part;
 mod pending_run;
@@ -40,6 +41,7 @@ pub use across::WayAcross;
 pub use block::{BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, PlannedTime};
 pub(crate) use compensating_motion::CompensatingMotion;
 pub use compensating_motion::FollowTime;
+use low_rapids::WaitingRapids;
 pub use nominal::NominalTime;
 pub(crate) use nominal::{AxisKinds, AxisTravels, STILL};
 use pending_run::PendingRun;
@@ -163,6 +165,8 @@ pub(crate) struct BlockStage<'a> {
     by_vector: bool,
     /// Chooses ways across; none: they are those of the machine file.
     across: Option<Box<AcrossChoice<'a>>>,
+    /// Rapids that wait for the next cut, where they may go lower than the CL file has them.
+    rapids: WaitingRapids,
     /// Where the depth axis is retracted to ahead of the first position in hand, mm; none: as the machine file has it.
     lowered: Option<f64>,
     /// Observers of cuts; none if nobody looks on.
@@ -207,6 +211,7 @@ impl<'a> BlockStage<'a> {
             largest: LargestDeviations::default(),
             counts: BlockCounts::default(),
             across: None,
+            rapids: WaitingRapids::default(),
             lowered: None,
             observers: None,
             findings: findings.clone(),
@@ -263,11 +268,20 @@ impl<'a> BlockStage<'a> {
     /// Line of the first point that waits for those after it.
     pub(crate) fn first_line(&self) -> Option<u64> {
         let held = self.across.as_ref().and_then(|across| across.first_line());
-        held.or_else(|| self.gathered.first_line())
+        let waiting = || self.gathered.first_line().or_else(|| self.rapids.first_line());
+        held.or_else(waiting)
     }
 
     /// Takes elements in order; none of them is solved ahead.
     pub(crate) fn take(&mut self, elements: &[StreamItem<ChosenPoint>], out: &mut BlockSink<'_>) {
+        match self.across.as_ref().is_some_and(|across| across.links()) {
+            true => self.take_low(elements, out),
+            false => self.take_each(elements, out),
+        }
+    }
+
+    /// Takes elements as they are.
+    fn take_each(&mut self, elements: &[StreamItem<ChosenPoint>], out: &mut BlockSink<'_>) {
         match self.across {
             None => self.each(elements, &mut |stage, next, lane| stage.next(next, lane, out)),
             Some(_) => self.each(elements, &mut |stage, next, lane| {
@@ -342,6 +356,7 @@ impl<'a> BlockStage<'a> {
 
     /// The file ends: what waits is carried out.
     pub(crate) fn finish(&mut self, line: u64, out: &mut BlockSink<'_>) {
+        self.end_rapids(out);
         self.end_run(out);
         if let Some(across) = &mut self.across {
             across.hand_on_all(line, out);

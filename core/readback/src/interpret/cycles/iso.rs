@@ -219,6 +219,16 @@ fn levels_said(
     }
     if let Some(step) = words.take(b'Q') {
         running.step = step * least_increment(control, words, b'Q');
+        let counts = control.modal.unit * step > running.step;
+        let pecks = matches!(running.meaning, Meaning::CycleDeep | Meaning::CycleBreakChip);
+        if pecks && counts && running.step < TINY_PECK {
+            let message = format!(
+                "Q{step} of {} counts in least increments: the hole is made in pecks of {:.4} mm",
+                running.code, running.step
+            );
+            let help = "a point behind the number, or thousandths of a millimetre, if longer ones are meant";
+            control.note(Diagnostic::warning("nc-peck", message).help(help));
+        }
     }
     if let Some(time) = words.take(b'P') {
         let seconds =
@@ -228,6 +238,9 @@ fn levels_said(
     running.pitch = thread_pitch(control, &running, words).or(running.pitch);
     Ok(running)
 }
+
+/// Pecks that are shorter, mm, are hardly meant.
+const TINY_PECK: f64 = 0.05;
 
 /// The pitch of a thread, mm, by a letter that the dialect names beside the cycle: J threads an inch, any other mm.
 fn thread_pitch(control: &ControlState, running: &IsoCycle, words: &mut BlockWords) -> Option<f64> {

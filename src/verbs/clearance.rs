@@ -23,7 +23,7 @@ use post_machine::diagnostic::{Diagnostic, Severity};
   post clearance part.h --machine dmu50-with-vise.toml
   post clearance part.nc --machine my-mill.toml --cl part.cls
   post clearance part.nc -m my-mill.toml --set clearance.keep=2
-  post clearance part.nc -m my-mill.toml --set stock.cut=true --stock-stl left.stl
+  post clearance part.nc -m my-mill.toml --set stock.cut=true --stock-stl left.stl --csv cuts.csv
 
 Exit codes: 0 proven: nothing that has a body hits anything; 1 something hits, or that it does not is not proven, or a
 block was refused; 2 the command line is wrong.")]
@@ -39,6 +39,11 @@ pub struct ClearanceArguments {
     #[arg(long, value_name = "CL-FILE", value_parser = file())]
     cl: Option<PathArg>,
 
+    /// Writes a row of each line that moves as CSV: how near any two bodies come on it, and of a stock that is cut how much is
+    /// taken of it, and how deep and wide the cut is; `-` is standard output.
+    #[arg(long, value_name = "FILE", value_parser = file())]
+    csv: Option<PathArg>,
+
     /// Writes what may be left of a stock that is cut (`[stock] cut = true`) as an STL file: closed, mm, as the CL file has
     /// the part, exact to within a cell; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
@@ -48,22 +53,24 @@ pub struct ClearanceArguments {
 /// Does as the arguments say.
 pub fn run(session: &Session, arguments: &ClearanceArguments) -> Result<(), Failure> {
     let control = NcControl::new(session, &arguments.program.settings())?;
-    let ClearanceArguments { input, cl, .. } = arguments;
-    let request = ClearanceRequest { input: input.clone(), cl: cl.clone() };
+    let ClearanceArguments { input, cl, csv, .. } = arguments;
+    let request = ClearanceRequest { input: input.clone(), cl: cl.clone(), csv: csv.clone() };
     let mut found = clearance::clearance(session, &control, &request)?;
-    let printed = match (&arguments.stock_stl, &found.left) {
-        (Some(path), Some(left)) => {
-            left.write_stl(session, path)?;
-            *path == PathArg::Standard
-        }
-        (Some(_), None) => {
-            let message = "there is no stock that is cut: no STL file is written";
-            let help = "[stock] of the machine file has its shape, and cut = true";
-            found.findings.push(Diagnostic::error("clearance-body", message).help(help));
-            false
-        }
-        (None, _) => false,
-    };
+    let table = *csv == Some(PathArg::Standard);
+    let printed = table
+        | match (&arguments.stock_stl, &found.left) {
+            (Some(path), Some(left)) => {
+                left.write_stl(session, path)?;
+                *path == PathArg::Standard
+            }
+            (Some(_), None) => {
+                let message = "there is no stock that is cut: no STL file is written";
+                let help = "[stock] of the machine file has its shape, and cut = true";
+                found.findings.push(Diagnostic::error("clearance-body", message).help(help));
+                false
+            }
+            (None, _) => false,
+        };
     terminal::print_beside(session, &clearance::text::text(&found), printed);
     let (errors, warnings): (Vec<_>, Vec<_>) =
         found.findings.into_iter().partition(|finding| finding.severity == Severity::Error);

@@ -14,7 +14,7 @@ use post_readback::interpret::Limits;
 use post_readback::verify::Verification;
 
 use crate::JobMachine;
-use crate::clearance::{self, ClearanceFound, Hearer};
+use crate::clearance::{self, ClearanceFound, Heard, Hearer};
 use crate::compensate::{self, ServoCompensation, ShiftedPath};
 use crate::failure::Failure;
 use crate::files::{AtomicFile, ClSource, FileFault, PathArg};
@@ -324,12 +324,12 @@ impl<'a> ProgramMaker<'a> {
             outcome.verification = Some(held.found);
         }
         let mut near = match (&page, clearance) {
-            (Some(_), true) => Some(ClearanceRows::new()?),
+            (Some(_), true) => Some(ClearanceRows::new(clearance::cuts_stock(&part.machine))?),
             _ => None,
         };
         if clearance {
             let program = ProgramInput { name: text.name(), text: text.reread()? };
-            let mut hear = near.as_mut().map(|near| |line, distance| near.hear(line, distance));
+            let mut hear = near.as_mut().map(|near| |heard: &Heard| near.hear(heard));
             let hear = hear.as_mut().map(|hear| hear as &mut Hearer<'_>);
             let mut proven = self.prove(part, outcome.moved, source, program, hear)?;
             findings.append(&mut proven.findings);

@@ -124,6 +124,9 @@ fn rows(rows: &mut NamedValues, found: &SummaryJson<'_>, origin: impl Fn(&Plugin
     );
     rows.row_if("read back", verification.as_ref().map(|held| as_asked(held.found)));
     rows.row_if("clearance", clearance.as_ref().map(ClearanceSummary::fact));
+    for [name, value] in clearance.iter().flat_map(ClearanceSummary::stock_rows) {
+        rows.row(name, value);
+    }
     for used in report.axes.iter().filter(|axis| axis.min <= axis.max) {
         rows.row(format_args!("axis {}", used.name), used_of(used));
     }

@@ -10,9 +10,9 @@ use post_clearance::placement::Placement;
 use post_machine::kinematics::{Joint, Joints};
 use post_motion::path::turns;
 
-use crate::been::goes_alone;
+use crate::been::{goes_alone, lean};
 use crate::chip::Chip;
-use crate::field::{Cutter, Field, Volume};
+use crate::field::{Around, Cutter, Field, Volume};
 use crate::profile::ToolPose;
 
 /// Pieces of a way that a body is looked at on; what is not proven then is not.
@@ -92,28 +92,22 @@ impl Mounted {
     }
 }
 
-/// What a cutter removes of a field along a way, at feed: how much, and how far it goes into it. Where it is not known how the axes go nothing is removed
-/// for certain but at the ends, and nothing is left for certain.
+/// What a cutter removes of a field along a way, at feed: how much, and how far it goes into it. Where it is not known how
+/// the axes go nothing is removed for certain but at the ends, and nothing is left for certain.
 pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) -> Chip {
-    let (mut removed, mut engagement) = (Volume::default(), None);
-    let straight = tool.straight(way);
+    if let Some(poses) = tool.straight(way) {
+        let stray = if way.independent { lean((poses[1].tip - poses[0].tip).norm()) } else { 0.0 };
+        return field.cut_straight(cutter, poses, stray);
+    }
     let pose = |joints: &Joints| tool.pose(joints);
-    match straight {
-        Some(poses) => {
-            let chip = field.remove_straight(cutter, poses);
-            removed += chip.volume;
-            engagement = chip.engagement;
-        }
-        None => {
-            for stance in way.ends {
-                removed += field.remove(cutter, &pose(&stance.joints));
-            }
-        }
+    let mut removed = Volume::default();
+    for stance in way.ends {
+        removed += field.remove(cutter, &pose(&stance.joints));
     }
     let step = field.cell().max();
     let mut waiting: Vec<Piece> = way.whole().into_iter().collect();
     let mut lost = waiting.is_empty();
-    let mut count = 0;
+    let (mut count, mut before) = (0, None);
     while let Some(piece) = waiting.pop() {
         count += 1;
         let Some(at) = way.middle(&piece) else {
@@ -131,19 +125,20 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
             continue;
         }
         let middle = pose(&at);
-        if straight.is_none() {
-            removed += field.remove(cutter, &middle);
+        removed += field.remove(cutter, &middle);
+        if !fine {
+            lost = true;
+            continue;
         }
-        match fine {
-            true => removed += field.doubt(cutter, &middle, reach),
-            false => lost = true,
-        }
+        let around = Around { pose: middle, by: reach, up: 0.0 };
+        removed += field.doubt_around(cutter, &around, before.as_ref(), None);
+        before = Some(around);
     }
     if lost {
         removed.at_most = removed.at_most.max(field.volume().at_most);
         field.doubt_all();
     }
-    Chip { volume: removed, engagement }
+    Chip { volume: removed, engagement: None }
 }
 
 /// What is known of a body and a field on a way.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use post_clearance::convex::Convex;
-use post_clearance::distance::of_shapes;
+use post_clearance::distance::{Apart, of_shapes};
 use post_clearance::placement::Placement;
 use post_clearance::shape::Shape;
 
@@ -38,6 +38,34 @@ pub struct Compared {
 pub fn surface_of(triangles: &[[Vector3<f64>; 3]]) -> Option<Shape> {
     let kept = triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a);
     Shape::new(kept.copied().map(Convex::triangle).collect())
+}
+
+/// How far points are from a surface.
+#[derive(Debug)]
+pub struct Nearness<'a> {
+    surface: &'a Shape,
+    dot: Shape,
+    guess: [usize; 2],
+}
+
+impl<'a> Nearness<'a> {
+    /// Of points from `surface`.
+    pub fn of(surface: &'a Shape) -> Option<Self> {
+        let dot = Shape::new(vec![Convex::ball(Vector3::zeros(), 0.0)])?;
+        Some(Self { surface, dot, guess: [0; 2] })
+    }
+
+    /// A point is no farther than this, mm.
+    pub fn from(&mut self, point: Vector3<f64>) -> f64 {
+        self.apart(point).at_most
+    }
+
+    fn apart(&mut self, point: Vector3<f64>) -> Apart {
+        let at = Placement { shift: point, ..Placement::identity() };
+        let apart = of_shapes(self.surface, &self.dot, &at, self.guess, f64::INFINITY);
+        self.guess = apart.nearest;
+        apart
+    }
 }
 
 /// One of the two, as it is certainly and as it may be.
@@ -98,10 +126,9 @@ impl Solid<'_> {
     fn farthest(self, other: Self, surface: &Shape) -> Farthest {
         let cell = self.0.grid.cell;
         let mut farthest = Farthest::default();
-        let Some(dot) = Shape::new(vec![Convex::ball(Vector3::zeros(), 0.0)]) else {
+        let Some(mut near) = Nearness::of(surface) else {
             return Farthest { at_most: f64::INFINITY, ..farthest };
         };
-        let mut guess = [0; 2];
         // The distance of the last point that was asked for: of one beside it, it is no more than the way between longer.
         let mut last: Option<(Vector3<f64>, f64)> = None;
         for place in self.0.prisms() {
@@ -117,9 +144,7 @@ impl Solid<'_> {
                     if bound + around <= farthest.at_most && bound <= farthest.at_least {
                         continue;
                     }
-                    let at = Placement { shift: point, ..Placement::identity() };
-                    let apart = of_shapes(surface, &dot, &at, guess, f64::INFINITY);
-                    guess = apart.nearest;
+                    let apart = near.apart(point);
                     last = Some((point, apart.at_most));
                     farthest.at_most = farthest.at_most.max(apart.at_most + around);
                     let certain = self.0.holds(point) && !other.0.may_hold(point);

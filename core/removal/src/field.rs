@@ -3,14 +3,16 @@
 use nalgebra::Vector3;
 
 use crate::chip::{Chip, Gauge};
-use crate::profile::{Frustum, Line, Run, ToolPose, extents, frusta, grown, hull, runs};
+use crate::profile::{
+    Frustum, Line, Run, ToolPose, along_axis, extents, frusta, grown, hull, runs, slid,
+};
 use crate::rays::{Bound, Grid, Rays, Span, Stretch, common, within};
 use crate::sweep::Sweep;
 
 /// Prisms of all three directions together that a stock has if no resolution is said.
 const PRISMS: f64 = 150_000.0;
 
-/// Prisms that a stock has at most: of 24 bytes and more each.
+/// Prisms that a stock has at most: of 24 bytes each, and more where it is cut.
 const MOST_PRISMS: f64 = 2e7;
 
 /// Prisms of a tile, in each direction of the section.
@@ -95,11 +97,7 @@ impl Field {
     pub fn block(size: Vector3<f64>, resolution: f64) -> Self {
         let mut field = Self::empty(size, resolution);
         for rays in field.upper.iter_mut().chain([&mut field.lower]) {
-            let whole = [0.0, size[rays.axis()]];
-            let [columns, rows] = rays.counts();
-            for place in 0..columns * rows {
-                rays.set([place % columns, place / columns], &[whole]);
-            }
+            rays.fill_all([0.0, size[rays.axis()]]);
         }
         field
     }
@@ -150,13 +148,55 @@ impl Field {
         removed
     }
 
-    /// Takes away what a cutter certainly removes that goes straight without turning; what was left there.
-    pub fn remove_straight(&mut self, cutter: &Cutter, poses: [ToolPose; 2]) -> Chip {
-        let [from, to] = poses;
+    /// A cutter goes straight without turning, and strays from its line no farther than `stray`, mm: what it certainly removes is
+    /// taken away, and what it may touch is not left for certain any more.
+    pub fn cut_straight(&mut self, cutter: &Cutter, poses: [ToolPose; 2], stray: f64) -> Chip {
         let mut gauge = Gauge::new(poses);
+        let mut volume = self.remove_measured(cutter, poses, &mut gauge);
+        let [from, to] = poses;
+        let way = to.tip - from.tip;
+        // All of a way along the tool axis is touched at once, of others a piece that is two cells long.
+        let slides = along_axis(poses);
+        let pieces = match slides {
+            Some(_) => 1.0,
+            None => libm::ceil(way.norm() / (2.0 * self.grid.cell.max())).max(1.0),
+        };
+        let mut before = None;
+        for piece in 0..pieces as u64 {
+            let tip = from.tip + way * ((piece as f64 + 0.5) / pieces);
+            let by = 0.5 * way.norm() / pieces + stray;
+            let aside = Around { pose: ToolPose { tip, ..from }, by, up: 0.0 };
+            let around = slides.map_or(aside, |(pose, up)| Around { pose, by: stray, up });
+            volume += self.doubt_around(cutter, &around, before.as_ref(), Some(&mut gauge));
+            before = Some(around);
+        }
+        Chip { volume, engagement: gauge.engagement(&cutter.outer) }
+    }
+
+    /// Takes away what a cutter certainly removes that goes straight without turning; what was left there.
+    pub fn remove_straight(&mut self, cutter: &Cutter, poses: [ToolPose; 2]) -> Volume {
+        self.remove_measured(cutter, poses, &mut Gauge::new(poses))
+    }
+
+    /// The same, with what is taken measured.
+    fn remove_measured(
+        &mut self,
+        cutter: &Cutter,
+        poses: [ToolPose; 2],
+        gauge: &mut Gauge,
+    ) -> Volume {
+        let [from, to] = poses;
+        let mut removed = Volume::default();
+        if let Some((low, up)) = along_axis(poses) {
+            for run in &cutter.inner {
+                let run = run.slid(up);
+                let line = |point, axis| run.inside(&Line::new(&low, point, axis));
+                removed += self.carve(&run.extents(&low), &line, Some(gauge));
+            }
+            return removed;
+        }
         let way = to.tip - from.tip;
         let length = way.norm();
-        let mut removed = Volume::default();
         for run in &cutter.inner {
             // Long ways go in parts, so that their boxes hold little besides; they overlap by a cell, so that no prism lies
             // in two of them.
@@ -169,10 +209,10 @@ impl Field {
                 let pose = ToolPose { tip: from.tip + way * start, ..from };
                 let sweep = Sweep { run, pose, way: way * (end - start) };
                 let line = |point, axis| sweep.inside(point, axis);
-                removed += self.carve(&sweep.extents(), &line, Some(&mut gauge));
+                removed += self.carve(&sweep.extents(), &line, Some(gauge));
             }
         }
-        Chip { volume: removed, engagement: gauge.engagement(self.grid.cell.norm()) }
+        removed
     }
 
     /// Takes away what is inside of a convex body for certain; what was left of it.
@@ -192,11 +232,8 @@ impl Field {
                     // What another part of the same cut has removed was counted there.
                     length += common(left, lower.at(place), stretch);
                     if let Some(gauge) = &mut gauge {
-                        for [low, high] in within(left, stretch) {
-                            let [x, y] = [0, 1].map(|axis| place[axis] as f64 * grid.cell[axis]);
-                            let low = Vector3::new(x, y, low);
-                            gauge.take(low, Vector3::new(x + grid.cell.x, y + grid.cell.y, high));
-                        }
+                        gauge.possible(grid, place, within(left, stretch));
+                        gauge.certain(grid, place, within(lower.at(place), stretch));
                     }
                 }
             };
@@ -208,12 +245,38 @@ impl Field {
 
     /// What is within `by` of a cutter, mm, is not left for certain any more; what may be left there.
     pub fn doubt(&mut self, cutter: &Cutter, pose: &ToolPose, by: f64) -> Volume {
-        let Self { upper, lower, .. } = self;
-        let body = grown(&cutter.outer, by + lower.half_diagonal());
+        self.doubt_around(cutter, &Around { pose: *pose, by, up: 0.0 }, None, None)
+    }
+
+    /// The same of a cutter that stood `before` where what was left there is counted already, with what may be taken measured.
+    pub(crate) fn doubt_around(
+        &mut self,
+        cutter: &Cutter,
+        around: &Around,
+        before: Option<&Around>,
+        mut gauge: Option<&mut Gauge>,
+    ) -> Volume {
+        let Self { upper, lower, grid, .. } = self;
+        let half = lower.half_diagonal();
+        let body = around.body(cutter, half);
+        let counted = before.map(|before| (before.body(cutter, half), before.pose));
         let mut length = 0.0;
-        let line = |point| hull(&body, &Line::new(pose, point, 2));
-        lower.touch(&extents(&body, pose), Some(&upper[2]), &line, &mut |place, stretch| {
-            length += upper[2].left(place, stretch);
+        let line = |point| hull(&body, &Line::new(&around.pose, point, 2));
+        let extents = extents(&body, &around.pose);
+        lower.touch(&extents, Some(&upper[2]), &line, &mut |place, stretch| {
+            let left = upper[2].left(place, stretch);
+            if left <= 0.0 {
+                return;
+            }
+            length += left;
+            if let Some((body, pose)) = &counted {
+                let line = Line::new(pose, upper[2].middle(place), 2);
+                let [low, high] = hull(body, &line).unwrap_or([f64::INFINITY; 2]);
+                length -= upper[2].left(place, [low.max(stretch[0]), high.min(stretch[1])]);
+            }
+            if let Some(gauge) = &mut gauge {
+                gauge.possible(grid, place, within(upper[2].at(place), stretch));
+            }
         });
         Volume { at_least: 0.0, at_most: length * lower.area() }
     }
@@ -255,6 +318,21 @@ impl Field {
             let line = |point| run.inside(&Line::new(pose, point, 2));
             self.lower.meets(&run.extents(pose), &line)
         })
+    }
+}
+
+/// Where a cutter may touch: within `by` of it where it stands, and all the way `up` along its axis from there, mm.
+#[derive(Clone, Copy)]
+pub(crate) struct Around {
+    pub pose: ToolPose,
+    pub by: f64,
+    pub up: f64,
+}
+
+impl Around {
+    /// All of it, and what is no farther than `more` away, mm.
+    fn body(&self, cutter: &Cutter, more: f64) -> Vec<Frustum> {
+        slid(&grown(&cutter.outer, self.by + more), self.up)
     }
 }
 

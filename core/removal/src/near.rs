@@ -113,15 +113,13 @@ impl Field {
         }
         for span in self.upper[2].at([column, row]) {
             let span: Stretch = span.map(f64::from);
-            let cell = &self.grid.cell;
-            let low = Vector3::new(column as f64 * cell.x, row as f64 * cell.y, span[0]);
-            let high = Vector3::new(low.x + cell.x, low.y + cell.y, span[1]);
-            let whole = [low, high];
+            let whole = self.grid.block([column, row], span);
             if search.passes(search.bound(&whole).max(search.plane_bound(&whole))) {
                 continue;
             }
             let layers = self.grid.counts[2] - 1;
-            let [first, last] = span.map(|end| ((end / cell.z).max(0.0) as usize).min(layers));
+            let [first, last] =
+                span.map(|end| ((end / self.grid.cell.z).max(0.0) as usize).min(layers));
             for layer in first..=last {
                 if let Some(block) = self.cell_left([column, row, layer], &whole) {
                     search.block(&block);

@@ -240,6 +240,33 @@ impl Run {
     pub(crate) fn extents(&self, pose: &ToolPose) -> [Vector3<f64>; 2] {
         extents(&self.frusta, pose)
     }
+
+    /// What it sweeps that goes up along its axis, mm: convex as it is.
+    pub(crate) fn slid(&self, up: f64) -> Self {
+        Self { frusta: slid(&self.frusta, up), most: self.most }
+    }
+}
+
+/// What frusta sweep that go up along their axis, mm: each stays where it widens upwards, goes along where it narrows, and
+/// is as wide between as its wide end.
+pub(crate) fn slid(frusta: &[Frustum], up: f64) -> Vec<Frustum> {
+    let parts = frusta.iter().flat_map(|frustum| {
+        let Frustum { z: [low, high], r } = *frustum;
+        let narrows = r[1] < r[0];
+        let [from, to] = if narrows { [low, low + up] } else { [high, high + up] };
+        let between = Frustum { z: [from, to], r: [r[0].max(r[1]); 2] };
+        let end = if narrows { Frustum { z: [low + up, high + up], r } } else { *frustum };
+        [between, end]
+    });
+    parts.filter(|frustum| frustum.z[0] < frustum.z[1]).collect()
+}
+
+/// The lower of two poses and how far the other is above it, mm, if it is straight along the tool axis.
+pub(crate) fn along_axis([from, to]: [ToolPose; 2]) -> Option<(ToolPose, f64)> {
+    let way = to.tip - from.tip;
+    let climb = way.dot(&from.axis);
+    let low = if climb < 0.0 { to } else { from };
+    ((way - from.axis * climb).norm() <= 1e-3 * MARGIN).then_some((low, libm::fabs(climb)))
 }
 
 /// From where a line comes into the first of some frusta to where it leaves the last.

@@ -11,6 +11,18 @@ pub struct Grid {
     pub counts: [usize; 3],
 }
 
+impl Grid {
+    /// A stretch of a prism along Z, from corner to corner, mm.
+    pub(crate) fn block(
+        &self,
+        [column, row]: [usize; 2],
+        [low, high]: Stretch,
+    ) -> [Vector3<f64>; 2] {
+        let low = Vector3::new(column as f64 * self.cell.x, row as f64 * self.cell.y, low);
+        [low, Vector3::new(low.x + self.cell.x, low.y + self.cell.y, high)]
+    }
+}
+
 /// Which of the two bounds on what is left numbers are of: they are rounded so that it stays one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bound {
@@ -128,8 +140,19 @@ pub struct Rays {
     counts: [usize; 2],
     cell: [f64; 2],
     /// Of all prisms, in rows along the first axis of the section.
-    spans: Vec<Vec<Span>>,
+    prisms: Vec<Prism>,
+    /// What is left of a prism that nothing was taken of.
+    whole: [Span; 1],
     bound: Bound,
+}
+
+/// What is left in a prism.
+#[derive(Clone, Debug)]
+enum Prism {
+    /// All of it: most of a stock is never touched, and takes no memory of its own.
+    Whole,
+    /// Spans from low to high.
+    Spans(Vec<Span>),
 }
 
 /// Who is told of what is taken: the place of a prism, what is left there before, and the stretch.
@@ -144,7 +167,8 @@ impl Rays {
         let section = [(axis + 1) % 3, (axis + 2) % 3];
         let counts = section.map(|axis| grid.counts[axis]);
         let cell = section.map(|axis| grid.cell[axis]);
-        Self { axis, counts, cell, spans: vec![Vec::new(); counts[0] * counts[1]], bound }
+        let prisms = vec![Prism::Spans(Vec::new()); counts[0] * counts[1]];
+        Self { axis, counts, cell, prisms, whole: [[0.0; 2]], bound }
     }
 
     /// The axis along which they go.
@@ -164,26 +188,56 @@ impl Rays {
 
     /// What is left in the prism at a place of the section.
     pub fn at(&self, place: [usize; 2]) -> &[Span] {
-        &self.spans[place[1] * self.counts[0] + place[0]]
+        match &self.prisms[place[1] * self.counts[0] + place[0]] {
+            Prism::Whole => &self.whole,
+            Prism::Spans(spans) => spans,
+        }
+    }
+
+    /// Takes a stretch away in a prism; how much of it was left, mm.
+    fn take(&mut self, place: [usize; 2], stretch: Stretch) -> f64 {
+        let prism = &mut self.prisms[place[1] * self.counts[0] + place[0]];
+        match prism {
+            Prism::Spans(spans) => self.bound.take(spans, stretch),
+            Prism::Whole => {
+                let mut spans = self.whole.to_vec();
+                let taken = self.bound.take(&mut spans, stretch);
+                *prism = Prism::Spans(spans);
+                taken
+            }
+        }
     }
 
     /// Sets what is left there, stretches from low to high.
     pub fn set(&mut self, place: [usize; 2], stretches: &[Stretch]) {
         let bound = self.bound;
         let spans = stretches.iter().map(|stretch| bound.span(*stretch));
-        self.spans[place[1] * self.counts[0] + place[0]] =
-            spans.filter(|[low, high]| low < high).collect();
+        let spans = spans.filter(|[low, high]| low < high);
+        self.prisms[place[1] * self.counts[0] + place[0]] = Prism::Spans(spans.collect());
+    }
+
+    /// Of all prisms the same stretch is left.
+    pub fn fill_all(&mut self, stretch: Stretch) {
+        self.whole = [self.bound.span(stretch)];
+        self.prisms.fill(Prism::Whole);
     }
 
     /// Volume of what is left, mm³.
     pub fn volume(&self) -> f64 {
-        self.spans.iter().map(|spans| length(spans)).sum::<f64>() * self.area()
+        let lengths = self.prisms.iter().map(|prism| match prism {
+            Prism::Whole => length(&self.whole),
+            Prism::Spans(spans) => length(spans),
+        });
+        lengths.sum::<f64>() * self.area()
     }
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let own = size_of::<Vec<Span>>() * self.spans.capacity();
-        own + self.spans.iter().map(|spans| spans.capacity() * size_of::<Span>()).sum::<usize>()
+        let beside = self.prisms.iter().map(|prism| match prism {
+            Prism::Whole => 0,
+            Prism::Spans(spans) => spans.capacity() * size_of::<Span>(),
+        });
+        size_of::<Prism>() * self.prisms.capacity() + beside.sum::<usize>()
     }
 
     /// A point on the line through a place of the section, in cells.
@@ -193,6 +247,11 @@ impl Rays {
             point[axis] = place * cell;
         }
         point
+    }
+
+    /// A point on the line through the middle of a section.
+    pub fn middle(&self, place: [usize; 2]) -> Vector3<f64> {
+        self.point(place.map(|cells| cells as f64 + 0.5))
     }
 
     /// Takes away what is inside of a convex body for certain: of each prism the stretch on which the lines through all four
@@ -214,10 +273,10 @@ impl Rays {
         let mut corners: [Vec<Option<Corner>>; 2] = [vec![None; width], vec![None; width]];
         for row in rows[0]..rows[1] {
             for column in columns[0]..columns[1] {
-                let place = row * self.counts[0] + column;
+                let place = [column, row];
                 let left =
                     |[low, high]: &Span| f64::from(*high) > along[0] && f64::from(*low) < along[1];
-                if !self.spans[place].iter().any(left) {
+                if !self.at(place).iter().any(left) {
                     continue;
                 }
                 let mut stretch = [f64::NEG_INFINITY, f64::INFINITY];
@@ -236,8 +295,8 @@ impl Rays {
                     }
                 }
                 if stretch[0] < stretch[1] {
-                    taken([column, row], &self.spans[place], stretch);
-                    removed += self.bound.take(&mut self.spans[place], stretch);
+                    taken(place, self.at(place), stretch);
+                    removed += self.take(place, stretch);
                 }
             }
             corners.swap(0, 1);
@@ -265,10 +324,9 @@ impl Rays {
                 if other.is_some_and(empty) && empty(self) {
                     continue;
                 }
-                let middle = place.map(|cells| cells as f64 + 0.5);
-                if let Some(stretch) = line(self.point(middle)) {
+                if let Some(stretch) = line(self.middle(place)) {
                     taken(place, stretch);
-                    self.bound.take(&mut self.spans[row * self.counts[0] + column], stretch);
+                    self.take(place, stretch);
                 }
             }
         }
@@ -338,7 +396,7 @@ impl Rays {
             .flat_map(|row| (columns[0]..columns[1]).map(move |column| [column, row]));
         let mut left = places.filter(|place| !self.at(*place).is_empty());
         left.find_map(|place| {
-            let mut point = self.point(place.map(|cells| cells as f64 + 0.5));
+            let mut point = self.middle(place);
             let [low, high] = self.hull(place, line(point)?)?;
             // Between two spans there is nothing: an end is of one of them.
             let end = [low, high].into_iter().find(|end| low < high && end.is_finite())?;
@@ -349,7 +407,7 @@ impl Rays {
 
     /// Nothing is left any more.
     pub fn clear(&mut self) {
-        self.spans.fill(Vec::new());
+        self.prisms.fill(Prism::Spans(Vec::new()));
     }
 
     /// Places of the section.

@@ -80,7 +80,7 @@ P.views.foot = () => {
   const { el, m } = P;
   const chosen = el("div", { class: "chosen mono", role: "status", "aria-live": "polite" });
   P.by("foot").append(chosen, el("span", { class: "quiet" }, `${m.rows.toLocaleString("en")} blocks`));
-  const told = { deviation: "tip", axis_deviation: "axis", contour: "contour", clearance: "clear by", feed: "F" };
+  const told = { deviation: "tip", axis_deviation: "axis", contour: "contour", clearance: "clear by", chip: "cuts", cut_depth: "deep", cut_width: "wide", feed: "F" };
   const tell = () => {
     const { row, playing } = P.state;
     const word = (name) => (m.has(name) ? `${told[name]} ${P.quantity(m.at(name, row), m.unit(name), false, P.digits_of(m.blocks.columns.get(name)))}` : null);
@@ -89,7 +89,7 @@ P.views.foot = () => {
     const limit = m.meta.limits[m.at("limit", row)];
     const line = (text, name) => (m.lineOf(name, row) ? `${text} ${m.lineOf(name, row)}` : null);
     const parts = [`Block ${row + 1}`, line("NC", "nc"), line("CL", "cl"), line("old NC", "nc2"), m.timed ? P.clock(m.end(row), 3) : null,
-      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.at("q." + name, row), m.unit("q." + name), P.POSITION)}`), word("deviation"), word("axis_deviation"), word("contour"), word("clearance"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
+      ...m.axes.filter(own).map((name) => `${name} ${P.shown(m.at("q." + name, row), m.unit("q." + name), P.POSITION)}`), word("deviation"), word("axis_deviation"), word("contour"), word("clearance"), word("chip"), word("cut_depth"), word("cut_width"), word("feed") && word("feed") + (limit ? ` by ${limit}` : "")];
     const event = P.scene.marks.find((mark) => mark.row === row && !mark.quiet);
     if (event) parts.push(event.text);
     chosen.setAttribute("aria-live", playing ? "off" : "polite");

@@ -25,6 +25,7 @@ P.charts.find = () => {
     { title: "Velocities", lanes: axes.map((name) => lane("v." + name, name, { zero: true, limit: rate(name, "max_feed", 60) })) },
     { title: "Accelerations", lanes: axes.map((name) => lane("a." + name, name, { zero: true, limit: rate(name, "max_accel", 1) })) },
     { title: "Clearance", lanes: lane("clearance", "clear by", { zero: true }) },
+    { title: "Engagement", lanes: [lane("chip", "cut", { zero: true }), lane("cut_depth", "depth", { zero: true }), lane("cut_width", "width", { zero: true })] },
     { title: "Prediction", lanes: [series ? timed("contour", "contour", { limit: tolerance }) : lane("contour", "contour", { zero: true, limit: tolerance }), timed("feed", "feed")] },
   ]
     .map(({ title, lanes }) => ({ title, lanes: lanes.flat() }))

@@ -68,7 +68,7 @@ P.colour.of = (name) => {
 
 // Reads the theme anew and fills the scale of the mode in use.
 P.colour.refresh = () => {
-  const names = ["ground", "panel", "line", "text", "quiet", "accent", "cl", "rapid", "scene", "grid", "machine", "tool", "holder", "table", "edge", "mark", "select", "bad", "strong"];
+  const names = ["ground", "panel", "line", "text", "quiet", "accent", "cl", "rapid", "scene", "grid", "machine", "tool", "holder", "table", "rest", "edge", "mark", "select", "bad", "strong"];
   for (const name of names) P.colour[name] = P.colour.of(name);
   const [r, g, b] = P.colour.scene.rgb;
   P.colour.dark = 0.2126 * r + 0.7152 * g + 0.0722 * b < 0.4;
@@ -129,6 +129,9 @@ P.colour.find = () => {
     };
     modes.push({ id: "clearance", title: "clearance", unit: "mm", bad: true, make });
   }
+  share("chip", "volume cut");
+  share("cut_depth", "depth of cut");
+  share("cut_width", "width of cut");
   share("feed", "feed");
   kinds("limit", "what limits the feed", meta.limits);
   kinds("kind", "kind of block", P.KINDS);

@@ -315,10 +315,11 @@ P.load = async () => {
   // What is predicted of the blocks stands beside them, and for their times.
   const { blocks, predicted } = report.tables;
   if (predicted) for (const [name, column] of predicted.columns) blocks.columns.set(name, column);
-  // How near bodies come on a line of the program stands beside its blocks.
-  if (report.tables.clearance) {
-    const about = { from: "lines", name: "clearance", unit: "mm", decimals: 3 };
-    blocks.columns.set("clearance", new P.Column(about, blocks.rows, [], { report, columns: blocks.columns }));
+  // How near bodies come on a line of the program, and what it cuts, stands beside its blocks.
+  const { clearance } = report.tables;
+  if (clearance) {
+    const owner = { report, columns: blocks.columns };
+    for (const [name, { unit, decimals }] of clearance.columns) if (name !== "nc") blocks.columns.set(name, new P.Column({ from: "lines", name, unit, decimals }, blocks.rows, [], owner));
   }
   P.check(report);
   return report;

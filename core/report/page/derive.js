@@ -113,13 +113,16 @@ P.derive = {
     }
     names.forEach((name, at) => columns.get(name).keep(values[at]));
   },
-  // How near bodies come in a block, told of its line; of several ways over a line the nearest. A block that does not move has
-  // none.
+  // How near bodies come in a block and what it cuts, told of its line; of several ways over a line the nearest and the most. A
+  // block that does not move has none, and no body comes nearer than zero.
   lines: ({ tables }, columns) => {
-    const { nc, clearance } = Object.fromEntries([...tables.clearance.columns].map(([name, { values }]) => [name, values]));
-    const least = new Map();
-    nc.forEach((line, at) => least.set(line, Math.min(clearance[at], least.get(line) ?? Infinity)));
-    columns.get("clearance").keep(Float64Array.from(columns.get("nc").values, (line) => least.get(line) ?? NaN));
+    const { nc, ...told } = Object.fromEntries([...tables.clearance.columns].map(([name, { values }]) => [name, values]));
+    for (const [name, values] of Object.entries(told)) {
+      const worse = name === "clearance" ? Math.min : Math.max;
+      const of = new Map();
+      nc.forEach((line, at) => values[at] >= 0 && of.set(line, worse(values[at], of.get(line) ?? values[at])));
+      columns.get(name).keep(Float64Array.from(columns.get("nc").values, (line) => of.get(line) ?? NaN));
+    }
   },
   // The beginning of a block, told against the end of the one before.
   t1: (report, columns) => {

@@ -6,6 +6,8 @@
 P.TOOL = 10;
 P.HOLDER = 20;
 P.TABLE = 30;
+P.GOUGE = 40;
+P.REST = 50;
 
 P.vec = {
   add: (a, b, by = 1) => [a[0] + b[0] * by, a[1] + b[1] * by, a[2] + b[2] * by],
@@ -215,6 +217,15 @@ P.parts.build = (machine) => {
       if (corners[row] > 2) face(body[row], 1 + of(body[row]), a, b, c);
       else edge(body[row], a, b);
     }
+  }
+
+  // What is left of the stock beside the part: where that is cut into, and where something is left on it.
+  const { left } = P.m.report.tables;
+  if (left && !machine.shapes) {
+    const [over, ...place] = [...left.columns.values()].map(({ values }) => values);
+    const corner = (row) => place.map((values) => values[row]);
+    const tone = (far) => (far < 0 ? P.GOUGE : far > 0 ? P.REST : of(0));
+    for (let row = 0; row < left.rows; row += 3) face(0, 1 + tone(over[row]), corner(row), corner(row + 1), corner(row + 2));
   }
 
   // Boxes of travel: where the slides of the tool may bring the tip, and those of the work the part's origin.

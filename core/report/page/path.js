@@ -289,6 +289,7 @@ P.path.tell = () => {
   if (scene.cl) notes.push(m.meta.names.nc2 ? "thin: old program" : "thin: CL path");
   if (has((point) => path.look[point * 4 + 1] === scene.RAPID, path.count)) notes.push("dashed: rapid");
   if (vectors && state.scale) notes.push(`vectors × ${state.scale.toLocaleString("en")}${vectors.step > 1 ? `, the largest of every ${vectors.step} points` : ""}${vectors.small ? (vectors.count ? ", none below half of the tolerance" : ": all are below half of the tolerance") : ""}`);
+  if (state.machine && m.report.tables.left) notes.push("what is left: red where it is cut into the part, blue where it is thicker");
   if (state.machine && P.parts.made) {
     const { cutter, outline, length } = P.parts.made;
     const corner = cutter && cutter.corner_radius ? `, corner ${P.shown(cutter.corner_radius, "mm", P.POSITION)}` : "";

@@ -40,13 +40,13 @@ colour=vec4(mix(c,uGround,vOut*0.84),1.0);
 P.webgl.BODY = `#version 300 es
 precision highp float;
 in vec3 aAt,aNormal;in vec2 aBody;
-uniform mat4 uBodies[10],uClip;uniform vec3 uBack,uPlain,uTool,uHolder,uTable;uniform bool uLit;
+uniform mat4 uBodies[10],uClip;uniform vec3 uBack,uPlain,uTool,uHolder,uTable,uGouge,uRest;uniform bool uLit;
 out float vLight;flat out vec3 vColour;
 void main() {
 mat4 body=uBodies[int(aBody.x+0.5)];
 gl_Position=uClip*(body*vec4(aAt,1.0));
 float kind=floor(aBody.y/10.0);
-vColour=!uLit||kind<0.5?uPlain:kind<1.5?uTool:kind<2.5?uHolder:uTable;
+vColour=!uLit||kind<0.5?uPlain:kind<1.5?uTool:kind<2.5?uHolder:kind<3.5?uTable:kind<4.5?uGouge:uRest;
 vLight=uLit?(aBody.y-kind*10.0)*(0.62+0.38*abs(dot(mat3(body)*aNormal,uBack))):1.0;
 }`;
 
@@ -167,7 +167,7 @@ P.webgl.start = (canvas, restored) => {
   const body = (mesh_name, mode, bodies, clip, { plain, alpha, lit = false }) => {
     const { vao, count: vertices } = made.meshes[mesh_name];
     if (!vertices) return;
-    put(made.body, { uBodies: bodies.flat(), uClip: clip, uBack: P.camera.rows()[2], uLit: lit, uPlain: plain, uTool: P.colour.tool.rgb, uHolder: P.colour.holder.rgb, uTable: P.colour.table.rgb, uAlpha: alpha });
+    put(made.body, { uBodies: bodies.flat(), uClip: clip, uBack: P.camera.rows()[2], uLit: lit, uPlain: plain, uTool: P.colour.tool.rgb, uHolder: P.colour.holder.rgb, uTable: P.colour.table.rgb, uGouge: P.colour.bad.rgb, uRest: P.colour.rest.rgb, uAlpha: alpha });
     gl.bindVertexArray(vao);
     gl.drawArrays(mode, 0, vertices);
     count(vertices);

@@ -14,7 +14,8 @@ use post_machine::kinematics::Joint;
 use post_readback::{Motion, SpindleState};
 use post_removal::along::{self, Found, Mounted, Place, Watched};
 use post_removal::been::Been;
-use post_removal::compare::{Compared, surface_of};
+use post_removal::chip::Chip;
+use post_removal::compare::{Compared, Nearness, surface_of};
 use post_removal::field::{Cutter, Field, Volume};
 use post_removal::mesh::Triangle;
 use post_removal::profile::{ToolPose, between};
@@ -43,6 +44,8 @@ pub struct StockLeft {
     /// What each tool takes of it.
     pub cuts: Vec<ToolCut>,
     field: Field,
+    /// The part, in the frame of the field, and its surface.
+    wanted: Option<(Field, Shape)>,
     /// The low corner of the field, part frame, mm.
     low: Vector3<f64>,
 }
@@ -80,6 +83,23 @@ impl StockLeft {
         }
         AtomicFile::finish(session, files)?;
         Ok(())
+    }
+
+    /// How far points of its surface, part frame, are from that of the part, mm: below zero inside of it, zero where that is
+    /// not known, for it is no farther than a cell. None where no part is given.
+    pub(crate) fn over(&self) -> Option<impl FnMut(Vector3<f64>) -> f64> {
+        let (part, surface) = self.wanted.as_ref()?;
+        let mut near = Nearness::of(surface)?;
+        let within = self.cell.norm();
+        Some(move |point: Vector3<f64>| {
+            let point = point - self.low;
+            let far = near.from(point);
+            match () {
+                () if far <= within => 0.0,
+                () if part.holds(point) => -far,
+                () => far,
+            }
+        })
     }
 
     /// The same, in memory.
@@ -180,6 +200,18 @@ pub(super) struct Against<'a> {
     pub ways: &'a [Way<'a>],
     /// At rapid traverse.
     pub rapid: bool,
+    /// The spindle certainly turns.
+    pub spins: bool,
+}
+
+/// What a motion does to the stock.
+pub(super) enum Taken {
+    /// It cuts nothing.
+    Nothing,
+    /// It takes this of it.
+    Cut(Chip),
+    /// Its cutter is fed into it while the spindle stands.
+    Stands,
 }
 
 impl CutStock {
@@ -347,14 +379,13 @@ impl CutStock {
         self.been.clear();
     }
 
-    /// Takes a motion: what does not cut is held against what is left, and what cuts takes its part of it. Whether the cutter was
-    /// fed into the stock while the spindle stands.
-    pub fn motion(&mut self, against: &Against<'_>) -> bool {
+    /// Takes a motion: what does not cut is held against what is left, and what cuts takes its part of it.
+    pub fn motion(&mut self, against: &Against<'_>) -> Taken {
         let spindle = &against.motion.state.spindle;
         if matches!(spindle, SpindleState::Surface { .. }) {
             // A part that turns may be anywhere.
             self.forget();
-            return false;
+            return Taken::Nothing;
         }
         let mut others = std::mem::take(&mut self.others);
         for other in &mut others {
@@ -371,28 +402,34 @@ impl CutStock {
             if !against.rapid {
                 self.forget();
             }
-            return false;
+            return Taken::Nothing;
         };
-        let standstill = &against.motion.state.standstill;
-        let spins = standstill.spindle.or(standstill.change).is_none()
-            && matches!(*spindle, SpindleState::Clockwise(speed) | SpindleState::CounterClockwise(speed) if speed > 0.0);
         // Nothing says which tools are left-handed: one that turns the other way takes nothing away for certain.
-        let cuts = !against.rapid && spins && matches!(spindle, SpindleState::Clockwise(_));
-        let mut clear = true;
+        let cuts = !against.rapid && against.spins && matches!(spindle, SpindleState::Clockwise(_));
+        let (mut clear, mut chip) = (true, None);
         for way in against.ways {
-            clear &= self.way(&mut tool, against, way, cuts);
+            clear &= self.way(&mut tool, against, way, cuts, &mut chip);
+        }
+        if let Some(chip) = &chip {
+            let own = self.cuts.entry(tool.number).or_insert_with(|| ToolCut::new(tool.number));
+            own.take(chip, against.motion.line);
         }
         self.tool = Some(tool);
-        !clear && !against.rapid && !spins
+        match chip {
+            _ if !clear && !against.rapid && !against.spins => Taken::Stands,
+            Some(chip) => Taken::Cut(chip),
+            None => Taken::Nothing,
+        }
     }
 
-    /// Takes a way of a motion; whether all parts stay clear that do not cut.
+    /// Takes a way of a motion, what it takes of the stock as a chip; whether all parts stay clear that do not cut.
     fn way(
         &mut self,
         tool: &mut CuttingTool,
         against: &Against<'_>,
         way: &Way<'_>,
         cuts: bool,
+        chip: &mut Option<Chip>,
     ) -> bool {
         let mounted = tool.cutter.as_ref().map(|(_, mounted)| mounted);
         let straight = mounted.and_then(|mounted| mounted.straight(way));
@@ -416,21 +453,22 @@ impl CutStock {
         let (behind, ahead): (Vec<_>, Vec<_>) =
             tool.parts.iter_mut().filter(|part| !spared(part)).partition(|part| follows(part));
         let mut clear = true;
+        let mut taken = Chip::default();
         for part in ahead {
-            clear &= self.holds(part, against, way);
+            clear &= self.holds(part, against, way, &mut taken);
         }
-        match &tool.cutter {
-            Some((cutter, mounted)) if cuts => {
-                let chip = along::cut(&mut self.field, mounted, cutter, way);
-                let own = self.cuts.entry(tool.number).or_insert_with(|| ToolCut::new(tool.number));
-                own.take(&chip, against.motion.line);
-                self.chips += chip.volume;
-            }
+        let cutter = tool.cutter.as_ref();
+        match cutter.filter(|_| cuts) {
+            Some((cutter, mounted)) => taken += along::cut(&mut self.field, mounted, cutter, way),
             None if cuts => self.field.doubt_all(),
-            _ => {}
+            None => {}
         }
         for part in behind {
-            clear &= self.holds(part, against, way);
+            clear &= self.holds(part, against, way, &mut taken);
+        }
+        if cuts && cutter.is_some() {
+            self.chips += taken.volume;
+            *chip.get_or_insert_default() += taken;
         }
         // However much of it is known, the tool was there, and what was in its way is gone.
         if let Some((_, mounted)) = &tool.cutter
@@ -447,12 +485,22 @@ impl CutStock {
         clear
     }
 
-    /// Holds a part of the tool against what is left on a way; whether it stays clear.
-    fn holds(&mut self, part: &mut Part, against: &Against<'_>, way: &Way<'_>) -> bool {
+    /// Holds a part of the tool against what is left on a way; whether it stays clear. What a shank may take goes to `taken`: its
+    /// cut is as deep as it is in the stock.
+    fn holds(
+        &mut self,
+        part: &mut Part,
+        against: &Against<'_>,
+        way: &Way<'_>,
+        taken: &mut Chip,
+    ) -> bool {
         let clear = self.stays_clear(&mut part.held, against, way);
         if !clear {
             // What it hits may give way.
-            along::cut(&mut self.field, &part.mounted, &part.body, way);
+            let chip = along::cut(&mut self.field, &part.mounted, &part.body, way);
+            if part.kind == PartKind::Shank {
+                *taken += chip;
+            }
         }
         clear
     }
@@ -497,8 +545,8 @@ impl CutStock {
     /// What came of it: rows of the pairs, distances that were computed, what is left.
     pub fn finish(mut self) -> (Vec<PairRow>, u64, StockLeft) {
         self.put_down();
-        let part = self.part.map(|(part, surface)| {
-            let mut compared = self.field.compare(&part, &surface);
+        let part = self.part.as_ref().map(|(part, surface)| {
+            let mut compared = self.field.compare(part, surface);
             compared.deepest.point += self.low;
             compared.thickest.point += self.low;
             compared
@@ -510,6 +558,7 @@ impl CutStock {
             cell: self.field.cell(),
             cuts: self.cuts.into_values().collect(),
             field: self.field,
+            wanted: self.part,
             low: self.low,
         };
         (self.rows, self.distances, left)

@@ -3,6 +3,7 @@
 mod bodies;
 mod choice;
 mod left;
+mod line_row;
 mod names;
 mod of_job;
 mod outlines;
@@ -23,8 +24,9 @@ use post_readback::course::cl::ClSettings;
 use post_readback::{MOST_FAULTS, ProgramRun};
 
 use crate::cl_facts::ClFacts;
+use crate::columns::CsvTable;
 use crate::failure::Failure;
-use crate::files::PathArg;
+use crate::files::{AtomicFile, PathArg, Role};
 use crate::nc_program::{self, NcControl, ProgramFile, ProgramText, open_as};
 use crate::session::Session;
 pub(crate) use bodies::{of_stock, solid_name};
@@ -34,12 +36,13 @@ use watch::ClearanceWatch;
 
 pub(crate) use choice::ChoiceBodies;
 pub use left::StockLeft;
+pub use line_row::LineRow;
 pub use of_job::of_job;
 pub use pair_row::PairRow;
 pub use post_removal::compare::Farthest;
-pub use summary::{ClearanceSummary, CutSummary, PairSummary};
-pub use tool_cut::{LongestAt, ToolCut};
-pub use watch::Hearer;
+pub use summary::{ClearanceSummary, CutSummary, PairSummary, StockSummary};
+pub use tool_cut::{LongestAt, MostAt, ToolCut};
+pub use watch::{Heard, Hearer};
 
 /// A program that is to be proven.
 #[derive(Clone, Debug)]
@@ -48,7 +51,12 @@ pub struct ClearanceRequest {
     pub input: PathArg,
     /// The CL file that tells how thick its cutters are.
     pub cl: Option<PathArg>,
+    /// Where a row of each line that moves goes, as CSV.
+    pub csv: Option<PathArg>,
 }
+
+/// A table of lines.
+const LINES: Role = Role { what: "table", remedy: "name another file with --csv" };
 
 /// What came of it.
 #[derive(Clone, Debug)]
@@ -91,7 +99,26 @@ pub fn clearance(
         None => ClFacts::default(),
     };
     let program = ProgramFile::open(session, &request.input)?;
-    prove(control, &program.name, Box::new(program.text()?), &facts, None)
+    let name = &program.name;
+    let text = Box::new(program.text()?);
+    let Some(target) = &request.csv else { return prove(control, name, text, &facts, None) };
+    let mut files = AtomicFile::create(session, &[(LINES, target)])?;
+    let [file] = files.as_mut_slice() else { return prove(control, name, text, &facts, None) };
+    let mut table = CsvTable::new(LineRow::columns(), file);
+    let (mut last, mut written) = (LineRow::default(), Ok(()));
+    let mut hear = |heard: &Heard| {
+        if let (Some(row), true) = (last.hear(heard), written.is_ok()) {
+            written = table.row(&row);
+        }
+    };
+    let found = prove(control, name, text, &facts, Some(&mut hear))?;
+    written?;
+    if last.is_told() {
+        table.row(&last)?;
+    }
+    table.finish()?;
+    AtomicFile::finish(session, files)?;
+    Ok(found)
 }
 
 /// Proves the program `name` in `text`, which `control` runs; `facts` are those of its CL file. Who
@@ -136,6 +163,7 @@ pub fn prove(
             .at(note.place.clone())
             .help("take the / away where the block is wanted, or the block where it is not")
     }));
+    findings.extend(notes.iter().filter(|note| note.code == "nc-peck").cloned());
     findings.append(&mut found.findings);
     found.findings = findings;
     found.lacks.splice(0..0, without_body(machine));
@@ -201,6 +229,11 @@ fn without_body(machine: &Machine) -> Vec<String> {
     lacks
 }
 
+/// What is cut is taken from the stock of a machine.
+pub fn cuts_stock(machine: &Machine) -> bool {
+    machine.stock.as_ref().is_some_and(|stock| stock.cut.is_some())
+}
+
 /// A machine file says something of bodies besides pictures.
 pub fn is_described(machine: &Machine) -> bool {
     machine.stock.is_some()
@@ -225,7 +258,8 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
         findings.push(Diagnostic::warning("clearance-body", message).help(help));
     }
     findings.extend(outlines::of_tools(machine));
-    if machine.stock.as_ref().is_some_and(|stock| stock.cut.is_none())
+    if machine.stock.is_some()
+        && !cuts_stock(machine)
         && machine.outlines.iter().any(|outline| !outline.cutter.is_empty())
     {
         let message = "the stock counts as it is before the first cut, whatever is cut of it";

@@ -1,9 +1,15 @@
 //! What was proven, for summaries.
 
+use post_removal::field::Volume;
 use serde::Serialize;
 
-use super::{ClearanceFound, LongestAt, ToolCut};
+use super::{ClearanceFound, LongestAt, StockLeft, ToolCut};
 use crate::text::{at_least, number};
+
+/// No less and no more.
+pub(super) fn between([low, high]: [f64; 2], decimals: u8) -> String {
+    format!("{} to {}", number(low, decimals), number(high, decimals))
+}
 
 /// What was proven of a program, as its summary tells it.
 #[derive(Clone, Debug, Serialize)]
@@ -14,9 +20,49 @@ pub struct ClearanceSummary {
     pub pairs: Vec<PairSummary>,
     /// What has no body, and was not looked at.
     pub without_body: Vec<String>,
-    /// What each tool takes of a stock that is cut.
+    /// What is left of a stock that is cut.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stock: Option<StockSummary>,
+    /// What each tool takes of it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cuts: Vec<CutSummary>,
+}
+
+/// What is left of the stock: of volumes no less and no more than this, mm³.
+#[derive(Clone, Debug, Serialize)]
+pub struct StockSummary {
+    /// Before the first cut.
+    pub before_mm3: [f64; 2],
+    /// Behind the last.
+    pub left_mm3: [f64; 2],
+    /// What is cut of it.
+    pub cut_mm3: [f64; 2],
+    /// Edge of a cell, mm: to within that its surface is known.
+    pub cell_mm: f64,
+}
+
+impl StockSummary {
+    pub(super) fn new(stock: &StockLeft) -> Self {
+        let StockLeft { before, left, cell, .. } = stock;
+        let cut = [before.at_least - left.at_most, before.at_most - left.at_least];
+        Self {
+            before_mm3: [before.at_least, before.at_most],
+            left_mm3: [left.at_least, left.at_most],
+            cut_mm3: cut.map(|volume| volume.max(0.0)),
+            cell_mm: cell.max(),
+        }
+    }
+
+    /// All of it in a sentence.
+    pub fn fact(&self) -> String {
+        let between = |volume: [f64; 2]| between(volume, 0);
+        format!(
+            "{} mm³, {} mm³ cut of it, known to within {} mm",
+            between(self.left_mm3),
+            between(self.cut_mm3),
+            number(self.cell_mm, 3)
+        )
+    }
 }
 
 /// What a tool takes of the stock.
@@ -26,26 +72,56 @@ pub struct CutSummary {
     pub tool: u32,
     /// How much of the stock it takes, mm³: no less and no more than this.
     pub volume_mm3: [f64; 2],
-    /// Its straight cuts are no deeper, mm up from the tip.
-    pub depth_mm: Option<f64>,
-    /// Where they are deepest, a line of the program.
+    /// How deep its deepest straight cut is, mm up from the tip.
+    pub depth_mm: Option<[f64; 2]>,
+    /// Where it may be deepest, a line of the program.
     pub depth_line: Option<u64>,
-    /// Its straight cuts are no wider, mm across way and tool axis.
-    pub width_mm: Option<f64>,
-    /// Where they are widest.
+    /// How wide its widest straight cut is, mm across way and tool axis.
+    pub width_mm: Option<[f64; 2]>,
+    /// Where it may be widest.
     pub width_line: Option<u64>,
+    /// What it takes on the line of the program on which it may take most, mm³.
+    pub most_mm3: Option<[f64; 2]>,
+    /// That line.
+    pub most_line: Option<u64>,
 }
 
 impl CutSummary {
     fn new(cut: &ToolCut) -> Self {
         let known = |longest: &LongestAt| {
             let known = Some(*longest).filter(|longest| longest.line > 0);
-            (known.map(|longest| longest.at_most), known.map(|longest| longest.line))
+            let extent = known.map(|LongestAt { extent, .. }| [extent.at_least, extent.at_most]);
+            (extent, known.map(|longest| longest.line))
         };
         let ((depth_mm, depth_line), (width_mm, width_line)) =
             (known(&cut.depth), known(&cut.width));
-        let volume_mm3 = [cut.volume.at_least, cut.volume.at_most];
-        Self { tool: cut.tool, volume_mm3, depth_mm, depth_line, width_mm, width_line }
+        let volume = |volume: Volume| [volume.at_least, volume.at_most];
+        let most = Some(cut.most).filter(|most| most.line > 0);
+        Self {
+            tool: cut.tool,
+            volume_mm3: volume(cut.volume),
+            depth_mm,
+            depth_line,
+            width_mm,
+            width_line,
+            most_mm3: most.map(|most| volume(most.volume)),
+            most_line: most.map(|most| most.line),
+        }
+    }
+
+    /// What it takes, in a sentence.
+    pub fn fact(&self) -> String {
+        let part = |what: &str, unit: &str, range: Option<[f64; 2]>, line: Option<u64>| {
+            let (range, line) = (range?, line?);
+            Some(format!(", {what} {} {unit} in line {line}", between(range, 1)))
+        };
+        let parts = [
+            part("as deep as", "mm", self.depth_mm, self.depth_line),
+            part("as wide as", "mm", self.width_mm, self.width_line),
+            part("most", "mm³", self.most_mm3, self.most_line),
+        ];
+        let cut = format!("{} mm³ cut", between(self.volume_mm3, 0));
+        parts.into_iter().flatten().fold(cut, |told, part| told + &part)
     }
 }
 
@@ -79,6 +155,7 @@ impl ClearanceFound {
             motions: self.motions,
             pairs: pairs.collect(),
             without_body: self.lacks.clone(),
+            stock: self.left.as_ref().map(StockSummary::new),
             cuts: self.left.iter().flat_map(|left| left.cuts.iter().map(CutSummary::new)).collect(),
         }
     }
@@ -94,6 +171,14 @@ impl ClearanceSummary {
     /// The least distance that all pairs are proven to keep, mm; none where none is.
     pub fn clear_by_mm(&self) -> Option<f64> {
         self.pairs.iter().filter_map(|pair| pair.clear_by_mm).min_by(f64::total_cmp)
+    }
+
+    /// What is left of a stock that is cut, and what each tool takes of it: names and sentences.
+    pub fn stock_rows(&self) -> Vec<[String; 2]> {
+        let Some(stock) = &self.stock else { return Vec::new() };
+        let mut rows = vec![["stock left".to_owned(), stock.fact()]];
+        rows.extend(self.cuts.iter().map(|cut| [format!("tool {} takes", cut.tool), cut.fact()]));
+        rows
     }
 
     /// All of it in a sentence.

@@ -1,24 +1,26 @@
 //! The table of what was proven.
 
-use super::{ClearanceFound, Farthest, LongestAt, StockLeft, ToolCut};
+use post_removal::field::Volume;
+
+use super::summary::between;
+use super::{ClearanceFound, ClearanceSummary, CutSummary, Farthest};
 use crate::text::{at_least, number};
 use crate::text_table::{NamedValues, TextTable};
 
 /// What each tool takes of the stock.
-fn cut_table(cuts: &[ToolCut]) -> TextTable {
-    let mut table = TextTable::headed(
-        1,
-        ["", "cut, mm³", "no deeper than, mm", "line", "no wider than, mm", "line"],
-    );
-    for ToolCut { tool, volume, depth, width } in cuts {
-        let taken = format!("{} to {}", number(volume.at_least, 0), number(volume.at_most, 0));
-        let longest = |LongestAt { at_most, line }: &LongestAt| match *line > 0 {
-            true => [number(*at_most, 3), line.to_string()],
-            false => ["-".to_owned(), "-".to_owned()],
+fn cut_table(cuts: &[CutSummary]) -> TextTable {
+    let head = ["", "cut, mm³", "depth, mm", "line", "width, mm", "line", "most, mm³", "line"];
+    let mut table = TextTable::headed(1, head);
+    for cut in cuts {
+        let longest = |range: Option<[f64; 2]>, line: Option<u64>, decimals: u8| {
+            let range = range.map_or("-".to_owned(), |range| between(range, decimals));
+            [range, line.map_or("-".to_owned(), |line| line.to_string())]
         };
-        let [deep, deepest] = longest(depth);
-        let [wide, widest] = longest(width);
-        table.row([format!("tool {tool}"), taken, deep, deepest, wide, widest]);
+        let [deep, deepest] = longest(cut.depth_mm, cut.depth_line, 3);
+        let [wide, widest] = longest(cut.width_mm, cut.width_line, 3);
+        let [most, on] = longest(cut.most_mm3, cut.most_line, 0);
+        let tool = format!("tool {}", cut.tool);
+        table.row([tool, between(cut.volume_mm3, 0), deep, deepest, wide, widest, most, on]);
     }
     table
 }
@@ -29,24 +31,24 @@ pub fn text(found: &ClearanceFound) -> String {
     rows.row("motions", found.motions);
     rows.row("pairs of bodies", found.pairs.len());
     rows.row("distances computed", found.distances);
-    if let Some(StockLeft { before, left, cell, part, .. }) = &found.left {
-        let between = |low: f64, high: f64| format!("{} to {}", number(low, 0), number(high, 0));
-        rows.row("stock left, mm³", between(left.at_least, left.at_most));
-        let cut = [before.at_least - left.at_most, before.at_most - left.at_least];
-        rows.row("cut of it, mm³", between(cut[0].max(0.0), cut[1]));
-        rows.row("known to within, mm", number(cell.max(), 3));
-        if let Some(part) = part {
+    let ClearanceSummary { stock, cuts, .. } = found.summary();
+    if let Some(stock) = stock {
+        rows.row("stock left, mm³", between(stock.left_mm3, 0));
+        rows.row("cut of it, mm³", between(stock.cut_mm3, 0));
+        rows.row("known to within, mm", number(stock.cell_mm, 3));
+        if let Some(part) = found.left.as_ref().and_then(|left| left.part.as_ref()) {
+            let volume = |volume: Volume| between([volume.at_least, volume.at_most], 0);
             let far = |far: &Farthest| {
-                let range = format!("{} to {}", number(far.at_least, 3), number(far.at_most, 3));
+                let range = between([far.at_least, far.at_most], 3);
                 let [x, y, z]: [f64; 3] = far.point.into();
                 match far.at_least > 0.0 {
                     true => format!("{range}, at [{x:.3}, {y:.3}, {z:.3}]"),
                     false => range,
                 }
             };
-            rows.row("cut into the part, mm³", between(part.gouge.at_least, part.gouge.at_most));
+            rows.row("cut into the part, mm³", volume(part.gouge));
             rows.row("as deep as, mm", far(&part.deepest));
-            rows.row("left on the part, mm³", between(part.rest.at_least, part.rest.at_most));
+            rows.row("left on the part, mm³", volume(part.rest));
             rows.row("as thick as, mm", far(&part.thickest));
         }
     }
@@ -54,9 +56,9 @@ pub fn text(found: &ClearanceFound) -> String {
         rows.row("without a body, not looked at", found.lacks.join(", "));
     }
     let mut text = rows.table();
-    if let Some(cuts) = found.left.as_ref().map(|left| &left.cuts).filter(|cuts| !cuts.is_empty()) {
+    if !cuts.is_empty() {
         text.push('\n');
-        text.push_str(&cut_table(cuts).text());
+        text.push_str(&cut_table(&cuts).text());
     }
     if found.pairs.is_empty() {
         return text;

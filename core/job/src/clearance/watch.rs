@@ -9,12 +9,14 @@ use post_machine::description::{Machine, RapidAxes};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use post_readback::{
     BlockEffect, CycleKind, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState, Stance,
+    Standstill,
 };
 use post_removal::been::{Been, goes_alone};
+use post_removal::chip::Chip;
 use post_removal::profile::ToolPose;
 
 use super::bodies::{ToolShape, of_tool};
-use super::left::{Against, CutStock};
+use super::left::{Against, CutStock, Taken};
 use super::pair_row::PairRow;
 use super::start::{Known, Start};
 use super::{ClearanceFound, Cuts, proof};
@@ -29,8 +31,19 @@ const WEAR: f64 = 0.5;
 /// A distance to keep that is no longer need not be said, mm: there is none.
 const LEAST_SAID: f64 = 1e-3;
 
-/// Hears of motions: the line, and how near any two bodies come on it, mm.
-pub type Hearer<'h> = dyn FnMut(u64, f64) + 'h;
+/// What is told of a motion.
+#[derive(Clone, Copy, Debug)]
+pub struct Heard {
+    /// The line of the program.
+    pub line: u64,
+    /// No two bodies are nearer on it, mm, as far as that is known.
+    pub clear_by: Option<f64>,
+    /// What it takes of a stock that is cut.
+    pub chip: Option<Chip>,
+}
+
+/// Hears of motions.
+pub type Hearer<'h> = dyn FnMut(&Heard) + 'h;
 
 /// The proof along a program.
 pub(super) struct ClearanceWatch<'a, 'h> {
@@ -192,7 +205,9 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         };
         let poses = goes(motion, way.independent);
         let been = rapid && poses.is_some_and(|poses| self.been.covers(None, poses));
-        let cuts = been || !rapid;
+        let spins = spins(motion);
+        // What does not turn cuts nothing: its cutter is held against the stock as any other body.
+        let cuts = been || !rapid && spins;
         let lessens = self.stock.is_some();
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
@@ -224,6 +239,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         let ways = &[way, together][..1 + usize::from(twice)];
         let line = motion.line;
         let mut nearest = None;
+        let mut stands = false;
+        let hits = self.cutter_faults();
         for way in ways.iter().copied() {
             let motion = Move { way, rapid, line, beyond: None };
             self.proof.take(&motion, looks);
@@ -232,18 +249,42 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 nearest = distance.into_iter().chain(nearest).reduce(f64::min);
             }
         }
-        if let (Some(distance), Some((hear, _))) = (nearest, &mut self.told) {
-            hear(line, distance);
-        }
-        let against = Against { motion, ways, rapid };
-        if self.stock.as_mut().is_some_and(|stock| stock.motion(&against)) {
-            let message = "a cutter is fed into the stock while the spindle stands, or may stand: nothing is cut for certain";
-            let help = "start the spindle before the cut, behind the tool change and any stop: S and M3 or M4";
-            // Once: all that follows is the same.
-            if self.faults.iter().all(|fault| fault.1 != message) {
-                self.faults.push((motion.line, message.to_owned(), help));
+        stands |= !rapid && !spins && self.cutter_faults() > hits;
+        let against = Against { motion, ways, rapid, spins };
+        let chip = self.stock.as_mut().and_then(|stock| match stock.motion(&against) {
+            Taken::Cut(chip) => Some(chip),
+            Taken::Nothing => None,
+            Taken::Stands => {
+                stands = true;
+                None
             }
+        });
+        if let Some((hear, _)) = &mut self.told {
+            hear(&Heard { line, clear_by: nearest, chip });
         }
+        if stands {
+            self.tell_standstill(line);
+        }
+    }
+
+    /// Says once that the spindle stands in a cut: all that follows is the same.
+    fn tell_standstill(&mut self, line: u64) {
+        let message = "a cutter is fed into the stock while the spindle stands, or may stand: nothing is cut for certain";
+        let help =
+            "start the spindle before the cut, behind the tool change and any stop: S and M3 or M4";
+        if self.faults.iter().all(|fault| fault.1 != message) {
+            self.faults.push((line, message.to_owned(), help));
+        }
+    }
+
+    /// Motions on which a cutter and the stock as it is before the first cut are not clear.
+    fn cutter_faults(&self) -> u64 {
+        let kind = |place: usize| self.proof.bodies()[place].kind;
+        let pairs = self.proof.results().filter(|pair| {
+            let kinds = pair.bodies.map(kind);
+            kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock)
+        });
+        pairs.map(|pair| pair.faults).sum()
     }
 
     /// Says where a cut is led by another length than the tool has.
@@ -431,6 +472,17 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
         found
     }
+}
+
+/// The spindle certainly turns.
+fn spins(motion: &Motion) -> bool {
+    let Standstill { spindle, change, .. } = motion.state.standstill;
+    let turns = match motion.state.spindle {
+        SpindleState::Clockwise(speed) | SpindleState::CounterClockwise(speed) => speed > 0.0,
+        SpindleState::Surface { .. } => true,
+        SpindleState::Off | SpindleState::Oriented => false,
+    };
+    turns && spindle.or(change).is_none()
 }
 
 /// Where a tool stands, part frame.

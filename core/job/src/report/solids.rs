@@ -159,21 +159,47 @@ pub(super) fn add(
             }
         }
     }
-    for [x, y, z] in left.and_then(|left| what_is_left(machine, left)).unwrap_or_default() {
-        table.row(&[0.0, 3.0, 0.0, x, y, z]).map_err(fault)?;
+    let compared = left.and_then(|left| compared(machine, left));
+    let plain = left.filter(|_| compared.is_none()).and_then(|left| what_is_left(machine, left));
+    for [x, y, z] in plain.iter().flatten().flatten() {
+        table.row(&[0.0, 3.0, 0.0, *x, *y, *z]).map_err(fault)?;
     }
     if table.rows() > 0 {
+        parts.table(table)?;
+    }
+    if let Some(compared) = compared {
+        let columns = [("over", 3), ("x", 2), ("y", 2), ("z", 2)];
+        let columns = columns.map(|(name, decimals)| TableColumn::new(name, "mm", decimals));
+        let mut table = TableWriter::new("left", columns.to_vec(), Parts::scratch()?);
+        for (over, corners) in compared {
+            for [x, y, z] in corners {
+                table.row(&[over, x, y, z]).map_err(fault)?;
+            }
+        }
         parts.table(table)?;
     }
     Ok(faults)
 }
 
-/// Corners of triangles of what is left of a stock, few enough for a frame, mm, machine frame; none where nothing is.
-fn what_is_left(machine: &Machine, left: &StockLeft) -> Option<Vec<Vertex>> {
-    let mut solid = DrawnSolid::read(&mut Cursor::new(left.stl()), MOST_TRIANGLES / 2).ok()?;
+/// Triangles of what is left of a stock, few enough for a frame, mm, machine frame; none where nothing is.
+fn what_is_left(machine: &Machine, left: &StockLeft) -> Option<Vec<[Vertex; 3]>> {
+    let solid = DrawnSolid::read(&mut Cursor::new(left.stl()), MOST_TRIANGLES / 2).ok()?;
     let stock = clearance::of_stock(machine);
-    let corners = solid.triangles.iter_mut().flatten();
-    Some(corners.map(|corner| stock.point(Vector3::from(*corner)).into()).collect())
+    let place = |corner: Vertex| stock.point(Vector3::from(corner)).into();
+    Some(solid.triangles.into_iter().map(|corners| corners.map(place)).collect())
+}
+
+/// The same with how far each is from the part that is to become of it, mm: below zero in it, zero where it is as near as a
+/// cell tells. None where no part is given.
+fn compared(machine: &Machine, left: &StockLeft) -> Option<Vec<(f64, [Vertex; 3])>> {
+    let mut over = left.over()?;
+    let stock = clearance::of_stock(machine);
+    let triangles = what_is_left(machine, left)?.into_iter();
+    let told = triangles.map(|corners| {
+        let middle = corners.map(Vector3::from).iter().sum::<Vector3<f64>>() / 3.0;
+        (over(stock.back(middle)), corners)
+    });
+    Some(told.collect())
 }
 
 /// The shapes that can be read, few enough for a frame; and why others cannot.

@@ -13,7 +13,7 @@ use super::nc_program::{self, ProgramFile};
 use super::read_back::{self, ReadingSetup, VerifiedProgram, VerifyWatch};
 use super::report::{ClWindow, ClearanceRows, ExtraColumns, MotionRows};
 use super::result_files::ResultFiles;
-use crate::clearance::{self, ClearanceFound, Hearer};
+use crate::clearance::{self, ClearanceFound, Heard, Hearer};
 use crate::failure::Failure;
 use crate::files::{self, AtomicFile, ClSource, JsonRows, PathArg, Role};
 use crate::job_file::is_marked;
@@ -128,14 +128,14 @@ pub fn verify(session: &Session, request: &VerifyRequest) -> Result<Verified, Fa
     // Which ways across bodies leave is seen by proving it alone.
     let clearance = request.clearance || machine.clearance.shortens_ways();
     let mut near = match (&texts.page, clearance) {
-        (Some(_), true) => Some(ClearanceRows::new()?),
+        (Some(_), true) => Some(ClearanceRows::new(clearance::cuts_stock(&machine))?),
         _ => None,
     };
     let clearance = match clearance {
         // It is run once more: rapids at feed are told from cuts, and what is refused of it was said.
         true => {
             let text = Box::new(program.text()?);
-            let mut hear = near.as_mut().map(|near| |line, distance| near.hear(line, distance));
+            let mut hear = near.as_mut().map(|near| |heard: &Heard| near.hear(heard));
             let hear = hear.as_mut().map(|hear| hear as &mut Hearer<'_>);
             let mut proven = clearance::of_job(&reading, &mut source, name, text, hear)?;
             proven.findings.retain(|finding| !held.findings.contains(finding));

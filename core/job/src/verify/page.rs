@@ -103,9 +103,14 @@ impl VerifyPage<'_> {
             }
         }
         let proven = self.clearance.map(ClearanceFound::summary);
-        meta.facts.extend(proven.as_ref().map(|proven| fact("clearance", proven.fact())));
+        if let Some(proven) = &proven {
+            let stock = proven.stock_rows();
+            meta.facts.push(fact("clearance", proven.fact()));
+            meta.facts.extend(stock.into_iter().map(|[name, value]| fact(&name, value)));
+        }
         meta.excludes = report::excludes(proven.as_ref());
-        let mut parts = Parts::of(self.session, self.machine, &mut meta)?;
+        let left = self.clearance.and_then(|proven| proven.left.as_ref());
+        let mut parts = Parts::with_left(self.session, self.machine, &mut meta, left)?;
         if let (Some(near), Some(proven)) = (near, &proven) {
             near.finish(proven, self.machine.clearance.keep, &mut parts, &mut meta)?;
         }

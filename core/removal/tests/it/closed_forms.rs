@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector3;
+use post_removal::chip::{Engagement, Extent};
 use post_removal::field::{Cutter, Field};
 use post_removal::profile::ToolPose;
 
@@ -124,7 +125,7 @@ fn faces_across_the_axes_are_exact() {
     assert_eq!(field.apart(&body(19.0, floor + 1.0)).at_least, 0.0);
 }
 
-/// How far a cut goes into what is left: the true depth and width, or more by what cells do not tell.
+/// How far a cut goes into what is left: the true depth and width lie between both bounds.
 #[test]
 fn a_cut_engages_by_its_width_and_its_depth() {
     let cell = 0.4;
@@ -144,15 +145,27 @@ fn a_cut_engages_by_its_width_and_its_depth() {
             };
             // What is beside is cut before.
             if wide < 8.0 {
-                field.remove_straight(&cutter, line(-wide, 20.0 - deep));
+                field.cut_straight(&cutter, line(-wide, 20.0 - deep), 0.0);
             }
-            let found = field.remove_straight(&cutter, line(0.0, 20.0 - deep)).engagement.unwrap();
-            let (width, more) = (found.width.unwrap(), 5.0 * cell);
-            assert!((deep..deep + more).contains(&found.depth), "{turn} {wide} {deep} {found:?}");
+            let before = field.volume();
+            let chip = field.cut_straight(&cutter, line(0.0, 20.0 - deep), 0.0);
+            let after = field.volume();
+            let Engagement { depth, width } = chip.engagement.unwrap();
+            let (width, more) = (width.unwrap(), 5.0 * cell);
+            let told = format!("{turn} {wide} {deep} {chip:?}");
+            assert!(depth.at_least <= deep && depth.at_most >= deep - 1e-4, "{told}");
+            assert!(depth.at_most - depth.at_least < more, "{told}");
             // The round end of the cut before leaves some beside it.
-            assert!(width >= wide && width <= 8.0 + more, "{turn} {wide} {deep} {found:?}");
-            let again = field.remove_straight(&cutter, line(0.0, 20.0 - deep));
-            assert!(again.engagement.is_none(), "{again:?}");
+            assert!(width.at_least <= 8.0 && width.at_most >= wide - 1e-4, "{told}");
+            assert!(width.at_least > wide - more && width.at_most <= 8.0, "{told}");
+            // Each place that may be taken is counted once, what is not taken for certain among it.
+            let [least, most] = [before.at_most - after.at_most, before.at_most - after.at_least];
+            assert!(chip.volume.at_most >= least && chip.volume.at_most < most + 1.0, "{told}");
+            let again = field.cut_straight(&cutter, line(0.0, 20.0 - deep), 0.0);
+            assert_eq!(again.volume.at_least, 0.0);
+            let nothing = |extent: Extent| extent.at_least == 0.0;
+            let Engagement { depth, width } = again.engagement.unwrap_or_default();
+            assert!(nothing(depth) && width.is_none_or(nothing), "{again:?}");
         }
     }
 }

@@ -110,7 +110,7 @@ fn samples(
 #[test]
 fn what_no_pose_of_a_way_touches_is_never_removed() {
     let (rounds, mut rng) = randomised(240, 3321);
-    let (mut removed, mut certain) = (0, 0);
+    let (mut removed, mut certain, mut heights) = (0, 0, 0);
     for _ in rounds {
         let free = rng.pick(3);
         let machine = Random::new(&mut rng, free, 0);
@@ -128,7 +128,8 @@ fn what_no_pose_of_a_way_touches_is_never_removed() {
             ends: [&ends[0], &ends[1]],
             independent: false,
         };
-        let chip = cut(&mut field, &case.mounted(&profile), &Cutter::new(&profile), &way).volume;
+        let chip = cut(&mut field, &case.mounted(&profile), &Cutter::new(&profile), &way);
+        let (engagement, chip) = (chip.engagement, chip.volume);
         let after = field.volume();
         assert!(chip.at_least <= before.at_least - after.at_least + 1e-2);
         assert!(chip.at_most + 1e-2 >= before.at_most - after.at_most, "{chip:?} {after:?}");
@@ -143,12 +144,21 @@ fn what_no_pose_of_a_way_touches_is_never_removed() {
             let deepest = deepest.fold(f64::NEG_INFINITY, f64::max);
             let (may, holds) = (field.may_hold(point), field.holds(point));
             assert!(may || deepest > -between, "{point:?} was removed, {deepest} deep");
+            if let (Some(engaged), true) = (engagement, deepest > 0.0) {
+                // What is cut is no higher above the tip while it is cut.
+                let cutting = poses.iter().filter(|pose| depth(&profile, pose, point) > 0.0);
+                let heights_above = cutting.map(|pose| (point - pose.tip).dot(&pose.axis));
+                let high = heights_above.fold(f64::NEG_INFINITY, f64::max);
+                assert!(high <= engaged.depth.at_most + 1e-6, "{high} {engaged:?}");
+                heights += 1;
+            }
             assert!(!holds || deepest < 1e-5, "{point:?} is said to be left, {deepest} deep");
             removed += u32::from(!may);
             certain += u32::from(holds);
         }
     }
     assert!(removed > at_least(600) && certain > at_least(8000), "{removed} {certain}");
+    assert!(heights > at_least(200), "{heights}");
 }
 
 #[test]

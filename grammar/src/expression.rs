@@ -2,6 +2,7 @@
 
 mod bounds;
 mod linear;
+mod slope;
 
 use crate::fault::SyntaxFault;
 use pest::Parser;
@@ -16,6 +17,7 @@ use std::sync::LazyLock;
 
 pub use bounds::Bounds;
 pub use linear::LinearForm;
+pub use slope::Slope;
 
 #[derive(Parser)]
 #[grammar = "expression.pest"]

@@ -22,7 +22,7 @@ pub mod text;
 pub use chain::{Link, LinkKind, parse_chain};
 pub use cl::*;
 pub use expression::{
-    Bounds, EvaluationFault, Expression, FUNCTIONS, LinearForm, parse_expression,
+    Bounds, EvaluationFault, Expression, FUNCTIONS, LinearForm, Slope, parse_expression,
 };
 pub use fault::{ReadError, SyntaxFault};
 pub use inequality::{Inequality, parse_inequality};

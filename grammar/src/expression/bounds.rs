@@ -9,7 +9,7 @@ use super::{Expression, Function, Operator, Term};
 pub type Bounds = [f64; 2];
 
 /// Nothing is known.
-const ANY: Bounds = [f64::NEG_INFINITY, f64::INFINITY];
+pub(super) const ANY: Bounds = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl Expression {
     /// Bounds on the value, with `name` giving those of each name but `pi`; infinite where the expression has no value
@@ -21,15 +21,7 @@ impl Expression {
             Term::Name(other) => name(other).unwrap_or(ANY),
             Term::Negative(operand) => negative(operand.bounds(name)),
             Term::Binary(left, operator, right) => {
-                let (left, right) = (left.bounds(name), right.bounds(name));
-                match operator {
-                    Operator::Add => [left[0] + right[0], left[1] + right[1]],
-                    Operator::Subtract => [left[0] - right[1], left[1] - right[0]],
-                    Operator::Multiply => corners(left, right, |a, b| a * b),
-                    Operator::Divide if holds(right, 0.0) => ANY,
-                    Operator::Divide => corners(left, right, |a, b| a / b),
-                    Operator::Power => power(left, right),
-                }
+                operator.bounds(left.bounds(name), right.bounds(name))
             }
             Term::Call(function, arguments) => {
                 let arguments: Vec<Bounds> =
@@ -42,8 +34,21 @@ impl Expression {
     }
 }
 
+impl Operator {
+    pub(super) fn bounds(self, left: Bounds, right: Bounds) -> Bounds {
+        match self {
+            Self::Add => [left[0] + right[0], left[1] + right[1]],
+            Self::Subtract => [left[0] - right[1], left[1] - right[0]],
+            Self::Multiply => corners(left, right, |a, b| a * b),
+            Self::Divide if holds(right, 0.0) => ANY,
+            Self::Divide => corners(left, right, |a, b| a / b),
+            Self::Power => power(left, right),
+        }
+    }
+}
+
 impl Function {
-    fn bounds(self, arguments: &[Bounds]) -> Bounds {
+    pub(super) fn bounds(self, arguments: &[Bounds]) -> Bounds {
         let x = arguments[0];
         let whole = |function: Self| corners(x, x, |a, _| function.value(&[a]));
         match self {
@@ -73,13 +78,13 @@ fn negative([least, most]: Bounds) -> Bounds {
     [-most, -least]
 }
 
-fn holds([least, most]: Bounds, value: f64) -> bool {
+pub(super) fn holds([least, most]: Bounds, value: f64) -> bool {
     least <= value && value <= most
 }
 
 /// Least and largest of what a function of two values has at their ends: all that it has between them, where it only
 /// rises or only falls along each.
-fn corners(a: Bounds, b: Bounds, of: impl Fn(f64, f64) -> f64) -> Bounds {
+pub(super) fn corners(a: Bounds, b: Bounds, of: impl Fn(f64, f64) -> f64) -> Bounds {
     let values = [of(a[0], b[0]), of(a[0], b[1]), of(a[1], b[0]), of(a[1], b[1])];
     if values.iter().any(|value| value.is_nan()) {
         return ANY;

@@ -1,6 +1,6 @@
 //! Expressions of a machine file.
 
-use post_grammar::{parse_expression, parse_inequality};
+use post_grammar::{Slope, parse_expression, parse_inequality};
 use post_testkit::randomised;
 
 fn name(name: &str) -> Option<f64> {
@@ -196,6 +196,49 @@ fn bounds_hold_for_all_values_between_those_of_the_names_and_close_in_on_them() 
             assert!(most - least < 1e-2 * steep * steep, "{text} in {boxes:?}: {least} to {most}");
         }
     }
+}
+
+#[test]
+fn slopes_hold_for_all_secants_between_the_bounds_of_the_names() {
+    let (rounds, mut random) = randomised(4000, 0x510e);
+    let mut told = 0;
+    for _ in rounds {
+        let text = OF_TWO[random.pick(OF_TWO.len())];
+        let expression = parse_expression(text).expect("it can be read");
+        let width = random.order(-4.0, 1.0);
+        let boxes = [0, 1].map(|_| {
+            let least = random.range(-10.0, 10.0 - width);
+            [least, least + width]
+        });
+        let place = |name: &str| usize::from(name == "b");
+        let slope = expression.slope(&|name| {
+            let mut rates = [[0.0; 2]; 2];
+            rates[place(name)] = [1.0; 2];
+            Some(Slope { value: boxes[place(name)], rates })
+        });
+        let value = |at: [f64; 2]| expression.evaluate(&|name| Some(at[place(name)]));
+        assert_eq!(slope.value, expression.bounds(&|name| Some(boxes[place(name)])), "{text}");
+        for quantity in 0..2 {
+            let [least, most] = slope.rates[quantity];
+            let from = boxes.map(|[least, most]| random.range(least, most));
+            let mut to = from;
+            to[quantity] = random.range(boxes[quantity][0], boxes[quantity][1]);
+            let way = to[quantity] - from[quantity];
+            let (Ok(first), Ok(last)) = (value(from), value(to)) else {
+                continue;
+            };
+            // Rates that are not known hold for all; secants that are too short are rounding.
+            if !(least.is_finite() && most.is_finite() && way.abs() > 1e-3 * width) {
+                continue;
+            }
+            let secant = (last - first) / way;
+            let rounding = 1e-12 * (1.0 + first.abs()) / way.abs() + 1e-9 * (1.0 + secant.abs());
+            let held = least - rounding <= secant && secant <= most + rounding;
+            assert!(held, "{text} in {boxes:?} by {quantity}: {secant} outside {least} to {most}");
+            told += 1;
+        }
+    }
+    assert!(told > 400, "{told}");
 }
 
 #[test]

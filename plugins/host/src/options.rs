@@ -87,7 +87,12 @@ pub(crate) fn check(spec: &OptionSpec, value: &GivenValue) -> Result<GivenValue,
                 GivenValue::Text(text) => text.clone(),
                 _ => String::new(),
             },
-            allowed: allowed.iter().map(|&text| text.to_owned()).collect(),
+            // That nothing is said is no word to be written.
+            allowed: allowed
+                .iter()
+                .filter(|text| !text.is_empty())
+                .map(|&text| text.to_owned())
+                .collect(),
         })
     };
     match (spec.kind, value) {

@@ -39,7 +39,10 @@ pub fn check_unit_system(setup: &Setup<'_>, called: [&str; 2], why: &str) -> Res
     let wanted = called[usize::from(setup.units == Units::Inch)];
     match setup.text("unit_system") {
         named if named == wanted => Ok(()),
-        "" => Err(format!("{why}: say which unit system it has by the option `unit_system`")),
+        "" => Err(format!(
+            "{why}: say which unit system it has by the option `unit_system`, \"{}\" for a program in mm, \"{}\" for one in inches",
+            called[0], called[1]
+        )),
         other => Err(format!(
             "the numbers of this program count in units of {wanted}, and the unit system of the control is {other}: it \
              would read them otherwise; [control] units chooses the program's, `unit_system` says the control's"

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use post_grammar::text::excerpt;
 use post_posting::plan::PlanReport;
 use post_posting::report::{
-    AxisRange, FastRapids, LengthSource, PluginUse, PostingReport, ReportedDeviation, ReportedTool,
-    WaysAcross,
+    AxisRange, DriveRange, FastRapids, LengthSource, PluginUse, PostingReport, ReportedDeviation,
+    ReportedTool, WaysAcross,
 };
 use post_readback::verify::Verification;
 use serde::Serialize;
@@ -130,6 +130,9 @@ fn rows(rows: &mut NamedValues, found: &SummaryJson<'_>, origin: impl Fn(&Plugin
     for used in report.axes.iter().filter(|axis| axis.min <= axis.max) {
         rows.row(format_args!("axis {}", used.name), used_of(used));
     }
+    for drive in &report.drives {
+        rows.row(format_args!("drive {}", drive.name), driven(drive));
+    }
     for tool in &report.tools {
         match tool.number {
             Some(number) => rows.row(format_args!("tool {number}"), length(tool)),
@@ -193,6 +196,15 @@ fn used_of(axis: &AxisRange) -> String {
     };
     let [min, max] = [axis.min, axis.max].map(|end| number(end, 3));
     format!("{min} to {max} {travel}, {} in all", number(axis.way, 1))
+}
+
+/// What of the travel of a drive is used.
+fn driven(drive: &DriveRange) -> String {
+    let [min, max] = [drive.min, drive.max].map(|end| number(end, 3));
+    let travel = drive.travel.map_or(String::new(), |[least, most]| {
+        format!(" of {} to {}", number(least, 3), number(most, 3))
+    });
+    format!("{min} to {max}{travel} {}", drive.unit)
 }
 
 /// How long a tool is, and who says so.

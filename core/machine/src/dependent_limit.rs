@@ -7,8 +7,9 @@
 use post_grammar::Inequality;
 use post_grammar::text::excerpt;
 
+use crate::axis_formula::FormulaNames;
 use crate::description::{Axis, Machine};
-use crate::kinematics::{Joints, Leg, Solver, TcpBlock};
+use crate::kinematics::{Drive, Joints, Leg, Solver, TcpBlock};
 
 /// What rounding of the words may take a limit beyond its end, in its own units (mm, degrees).
 pub const ROUNDED: f64 = 1.5e-3;
@@ -29,8 +30,8 @@ pub struct DependentLimit {
 /// What must hold.
 #[derive(Clone, Debug, PartialEq)]
 enum Rule {
-    /// An inequality, each name of which is among the names.
-    Formula(Inequality, Vec<(String, Named)>),
+    /// An inequality, and what its names stand for.
+    Formula(Inequality, FormulaNames),
     /// A leg reaches its platform, and its drive keeps to its travel.
     Reach(Leg),
 }
@@ -56,11 +57,19 @@ impl Named {
         let unit = axis.unit();
         Self::Axis { joint, unit, zero: axis.zero / unit }
     }
+
+    /// Its value at `joints`.
+    pub(crate) fn value(self, joints: &Joints) -> f64 {
+        match self {
+            Self::Axis { joint, unit, zero } => joints[joint] / unit + zero,
+            Self::Parameter(value) => value,
+        }
+    }
 }
 
 impl DependentLimit {
     /// The limit `text` says, each name of which is among `names`.
-    pub(crate) fn new(text: &str, inequality: Inequality, names: Vec<(String, Named)>) -> Self {
+    pub(crate) fn new(text: &str, inequality: Inequality, names: FormulaNames) -> Self {
         Self { text: excerpt(text, SHOWN).to_string(), rule: Rule::Formula(inequality, names) }
     }
 
@@ -85,21 +94,18 @@ impl DependentLimit {
     /// Places in the chain of the axes that it names, in the order written.
     pub fn joints(&self) -> impl Iterator<Item = usize> {
         let (names, leg) = match &self.rule {
-            Rule::Formula(_, names) => (names.as_slice(), None),
-            Rule::Reach(leg) => (&[][..], Some(leg.places())),
+            Rule::Formula(_, names) => (Some(names.axes().map(|(joint, _)| joint)), None),
+            Rule::Reach(leg) => (None, Some(leg.places())),
         };
-        let named = names.iter().filter_map(|(_, named)| match named {
-            Named::Axis { joint, .. } => Some(*joint),
-            Named::Parameter(_) => None,
-        });
-        named.chain(leg.into_iter().flatten())
+        names.into_iter().flatten().chain(leg.into_iter().flatten())
     }
 
     /// By how much it holds at `joints`, mm or degrees; below zero where it does not, no number where it has no value.
     pub fn margin(&self, joints: &Joints) -> f64 {
         match &self.rule {
             Rule::Formula(inequality, names) => {
-                let sides = inequality.sides(&|name| value(names, name, joints));
+                let known = names.at(joints);
+                let sides = inequality.sides(&|name| known.of(name));
                 sides.map_or(f64::NAN, |sides| inequality.margin(sides))
             }
             Rule::Reach(leg) => {
@@ -116,9 +122,10 @@ impl DependentLimit {
     /// A lower bound on the margin while each axis stays between its value in `least` and that in `most`.
     pub fn least_margin(&self, [least, most]: [&Joints; 2]) -> f64 {
         match &self.rule {
-            Rule::Formula(inequality, names) => inequality.least_margin(&|name| {
-                Some([value(names, name, least)?, value(names, name, most)?])
-            }),
+            Rule::Formula(inequality, names) => {
+                let known = names.between([least, most]);
+                inequality.least_margin(&|name| known.of(name))
+            }
             Rule::Reach(leg) => {
                 leg.range([least, most]).map_or(f64::NEG_INFINITY, |range| drive_margin(leg, range))
             }
@@ -169,14 +176,11 @@ impl DependentLimit {
     /// Way of an axis, mm or degrees.
     fn shown_way(&self, joint: usize, [least, most]: [&Joints; 2]) -> f64 {
         let unit = match &self.rule {
-            Rule::Formula(_, names) => names.iter().find_map(|(_, named)| match named {
-                Named::Axis { joint: at, unit, .. } if *at == joint => Some(*unit),
-                _ => None,
-            }),
-            Rule::Reach(leg) => {
-                let rotary = leg.joints.get(joint.wrapping_sub(leg.first));
-                rotary.filter(|joint| joint.rotary).map(|_| 1f64.to_radians())
+            Rule::Formula(_, names) => {
+                let mut axes = names.axes();
+                axes.find(|(at, _)| *at == joint).map(|(_, unit)| unit)
             }
+            Rule::Reach(leg) => Some(leg.unit_of(joint)),
         };
         (most[joint] - least[joint]) / unit.unwrap_or(1.0)
     }
@@ -289,7 +293,8 @@ impl DependentLimit {
             Rule::Formula(inequality, names) => (inequality, names),
             Rule::Reach(leg) => return leg_told(leg, joints, &stands),
         };
-        let Ok([left, right]) = inequality.sides(&|name| value(names, name, joints)) else {
+        let known = names.at(joints);
+        let Ok([left, right]) = inequality.sides(&|name| known.of(name)) else {
             return format!("[[limit]] `{}` has no value at {stands}", self.text);
         };
         let margin = inequality.margin([left, right]);
@@ -313,15 +318,6 @@ impl DependentLimit {
     }
 }
 
-/// The value of a name in a limit at `joints`.
-fn value(names: &[(String, Named)], name: &str, joints: &Joints) -> Option<f64> {
-    let (_, named) = names.iter().find(|(known, _)| known == name)?;
-    Some(match *named {
-        Named::Axis { joint, unit, zero } => joints[joint] / unit + zero,
-        Named::Parameter(value) => value,
-    })
-}
-
 /// By how much a drive that stands somewhere in a range keeps to its travel, mm or degrees.
 fn drive_margin(leg: &Leg, [least, most]: [f64; 2]) -> f64 {
     let margin = leg.travel.map_or(f64::INFINITY, |[first, last]| (least - first).min(last - most));
@@ -331,8 +327,12 @@ fn drive_margin(leg: &Leg, [least, most]: [f64; 2]) -> f64 {
 /// What is wrong with a leg where the axes stand as `stands` says.
 fn leg_told(leg: &Leg, joints: &Joints, stands: &str) -> String {
     let name = &leg.name;
+    let (table, lack) = match leg.drive {
+        Drive::Formula { .. } => ("drive", "has no value"),
+        _ => ("leg", "does not reach the platform"),
+    };
     let Some(value) = leg.value(joints) else {
-        return format!("[[leg]] {name} does not reach the platform at {stands}");
+        return format!("[[{table}]] {name} {lack} at {stands}");
     };
     let sign = if leg.turns() { "°" } else { " mm" };
     let shown = leg.reading(value);
@@ -340,11 +340,11 @@ fn leg_told(leg: &Leg, joints: &Joints, stands: &str) -> String {
     let margin = drive_margin(leg, [value; 2]);
     if margin >= -ROUNDED {
         return format!(
-            "[[leg]] {name} is not proven to keep its travel beside {stands}, where it stands at {shown:.3}{sign}"
+            "[[{table}]] {name} is not proven to keep its travel beside {stands}, where it stands at {shown:.3}{sign}"
         );
     }
     format!(
-        "[[leg]] {name} would stand at {shown:.3}{sign} at {stands}, its travel is {least:.3} to {most:.3}{sign}, passed by {:.3}{sign}",
+        "[[{table}]] {name} would stand at {shown:.3}{sign} at {stands}, its travel is {least:.3} to {most:.3}{sign}, passed by {:.3}{sign}",
         -margin
     )
 }

@@ -25,7 +25,7 @@ use crate::plan::{PlanStage, PlanWatch};
 use crate::preview::{self, FilePreview, wants_planes};
 use crate::program::{ClInterpreter, MoveFeed, ProgramStep, ReadingOptions};
 use crate::refusal;
-use crate::report::{AxisRange, PostingReport, ReportedDeviation, WaysAcross};
+use crate::report::{AxisRange, DriveRange, PostingReport, ReportedDeviation, WaysAcross};
 use crate::run_stages::RunBuffers;
 use crate::shift::{PathShift, ShiftStage};
 use crate::stream::{BATCH, BatchSink, StreamItem};
@@ -531,7 +531,14 @@ impl<'a> Post<'a> {
                 }
             })
             .collect();
+        let drives = stages.emit.drives().iter().map(|drive| DriveRange {
+            min: tidy(drive.min),
+            max: tidy(drive.max),
+            travel: drive.travel.map(|travel| travel.map(tidy)),
+            ..drive.clone()
+        });
         PostingReport {
+            drives: drives.collect(),
             machine: machine.name.clone(),
             dialect: machine.control.dialect.clone(),
             tcp: match machine.control.tcp {

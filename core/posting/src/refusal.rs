@@ -102,7 +102,10 @@ pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic
             value: format!("{:.4}° off", miss.to_degrees()),
             remedy: String::new(),
         })
-        .help("another machine, another set-up, or --msys apply if the axes are written in another frame"),
+        .help(match machine.pointing().is_empty() && machine.tool_axis.z < 1.0 - 1e-6 {
+            true => "the tool of this machine is drawn across Z ([tool] axis), and nothing turns it: a point without an axis of its own asks for Z; draw the tool along Z, or let the CAM system write the axis with each point (MULTAX/ON)",
+            false => "another machine, another set-up, or --msys apply if the axes are written in another frame",
+        }),
         PlacementError::Unreachable(Unreachable::Linear) => Diagnostic::error(
             "out-of-reach",
             format!("the linear axes of {} cannot bring the tip here at these angles", machine.name),
@@ -129,7 +132,7 @@ pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic
             value: format!("{miss:.4} mm off"),
             remedy: String::new(),
         })
-        .help("it takes a third linear axis (Y), or a tool that points to the line of the rotary axis here; is the part on that line (--mount, --msys)?"),
+        .help("it takes a third linear axis across these two, or a tool that points to the line of the rotary axis here; is the part on that line (--mount, --msys)?"),
         PlacementError::OverTravel { over, .. } if no_position(machine, over) => {
             let axis = &machine.axes[over.joint];
             Diagnostic::error(
@@ -201,7 +204,10 @@ pub(crate) fn beyond_limit(
             value: format!("{}, passed by {by:.3},", limit.stance(machine, joints)),
             remedy: String::new(),
         })
-        .help("another set-up of the part (--mount), another side ([solution] prefer), or a retract before the axes turn")
+        .help(match limit.leg() {
+            Some(_) => "another set-up of the part (--mount); where the tool is retracted or parked, [control] retract = { … }, leave or park that the drives reach",
+            None => "another set-up of the part (--mount), another side ([solution] prefer), or a retract before the axes turn",
+        })
 }
 
 /// `312.400 mm, its limit is 300.000 mm, passed by 12.400 mm`.
@@ -348,7 +354,7 @@ pub(crate) fn no_way(
                 rotary(joints)
             ),
             Ok(joints) => format!(
-                "{} lies on the other branch: the axes must jump",
+                "{} lies on the other branch, and within a cut the axes go on in one",
                 rotary(joints)
             ),
         })

@@ -67,6 +67,9 @@ pub struct PostingReport {
     pub axis_tolerance_deg: f64,
     /// What of each axis was used.
     pub axes: Vec<AxisRange>,
+    /// Where the drives of a parallel machine came to.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub drives: Vec<DriveRange>,
     /// The tools that were used, each with the length that travel was checked with.
     pub tools: Vec<ReportedTool>,
     /// Times that another branch of the solution or another full turn was taken, off the part.
@@ -173,6 +176,21 @@ pub struct AxisRange {
     pub travel: Option<[f64; 2]>,
     /// Way of the axis over all blocks, mm or degrees; between the words too where the control keeps the tip.
     pub way: f64,
+}
+
+/// Range of a drive that is no axis: of a leg, or by a formula.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DriveRange {
+    /// What it is called.
+    pub name: String,
+    /// `mm` or `deg`.
+    pub unit: &'static str,
+    /// Least value at the ends of blocks and of retracts.
+    pub min: f64,
+    /// Largest value there.
+    pub max: f64,
+    /// Its travel, if it has one.
+    pub travel: Option<[f64; 2]>,
 }
 
 /// A plugin that took part.

@@ -78,6 +78,13 @@ fn spread(found: &contour::ValueSpread, unit: f64) -> Spread {
 /// What is taken for granted because the machine file does not say otherwise.
 pub fn assumed(machine: &Machine) -> Vec<String> {
     let mut assumed = Vec::new();
+    if machine.legs().next().is_some() {
+        let legs: Vec<&str> = machine.legs().map(|leg| leg.name.as_str()).collect();
+        assumed.push(format!(
+            "drives that are no axes ({}) follow the axes, however fast: their largest feeds hold back what is posted, and are not in this time",
+            legs.join(", ")
+        ));
+    }
     let without = named(machine, |axis| axis.servo.is_none());
     if without.len() == machine.axes.len() {
         assumed.push("no axis has a [servo]: all are where they are commanded".to_owned());

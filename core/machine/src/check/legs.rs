@@ -17,6 +17,9 @@ const SEARCHED: usize = 200;
 /// Way of an axis in the table of a leg, mm or degrees.
 const WAY: f64 = 1.0;
 
+/// Share of the largest determinant below which a place counts as near one where the drives lose hold of the platform.
+const NEARLY: f64 = 0.01;
+
 /// Axis values that come back so near are those that went out, mm or radians.
 const SAME: f64 = 1e-6;
 
@@ -61,13 +64,7 @@ pub(super) fn told(probe: &Probe<'_>) -> (Option<LegsReport>, Vec<String>) {
     }
     let assembly = Assembly::new(legs.iter().copied());
     let inside: Vec<Joints> = places(probe)
-        .filter(|joints| {
-            machine
-                .limits
-                .iter()
-                .filter(|limit| limit.leg().is_some())
-                .all(|limit| limit.holds(joints))
-        })
+        .filter(|joints| machine.limits.iter().all(|limit| limit.holds(joints)))
         .collect();
     let reaches = |joints: &Joints| assembly.drives(joints).is_some();
     let home = *probe.home();
@@ -96,16 +93,16 @@ pub(super) fn told(probe: &Probe<'_>) -> (Option<LegsReport>, Vec<String>) {
                 .to_owned(),
         );
     }
-    if let AssemblyProof::Open { .. } = proof {
+    let senses = Senses::of(&assembly, &inside);
+    if let (AssemblyProof::Open { .. }, false) = (proof, senses.agree()) {
         warnings.push(
-            "it is not proven that the platform cannot come into another assembly: see `assembly`"
-                .to_owned(),
+            "the platform may come into another assembly inside travel: see `assembly`".to_owned(),
         );
     }
     let report = LegsReport {
         legs: legs.iter().map(report).collect(),
         share_of_travel: inside.len() as f64 / f64::from(PLACES),
-        assembly: assembly_told(probe, proof),
+        assembly: assembly_told(probe, proof, &senses),
         back: back(&assembly, &inside, proof),
     };
     (Some(report), warnings)
@@ -129,6 +126,8 @@ fn plus(leg: &Leg) -> String {
         Drive::Strut => "it grows".to_owned(),
         Drive::Belt { along } => format!("it pulls to {}", named(along.normalize())),
         Drive::Slide { along, .. } => format!("its carriage moves to {}", named(along)),
+        Drive::Formula { turns: true, .. } => "by its formula, deg".to_owned(),
+        Drive::Formula { .. } => "by its formula, mm".to_owned(),
         Drive::Crank { about, .. } => {
             // From the plus side of the frame.
             let (sense, view) = match about.sum() >= 0.0 {
@@ -166,10 +165,46 @@ fn prove(probe: &Probe<'_>, assembly: &Assembly<'_>) -> AssemblyProof {
     assembly.prove([&ends[0], &ends[1]])
 }
 
-fn assembly_told(probe: &Probe<'_>, proof: AssemblyProof) -> String {
+/// Determinants of the drives' rates at places that were looked at.
+struct Senses {
+    places: usize,
+    least: f64,
+    most: f64,
+}
+
+impl Senses {
+    fn of(assembly: &Assembly<'_>, inside: &[Joints]) -> Self {
+        let mut senses = Self { places: 0, least: f64::INFINITY, most: f64::NEG_INFINITY };
+        for value in inside.iter().filter_map(|joints| assembly.determinant(joints)) {
+            senses.places += 1;
+            senses.least = senses.least.min(value);
+            senses.most = senses.most.max(value);
+        }
+        senses
+    }
+
+    /// They have one sign, and none of them is near zero.
+    fn agree(&self) -> bool {
+        self.places > 0 && self.least * self.most > 0.0 && self.smallest() > NEARLY
+    }
+
+    /// The smallest as a share of the largest.
+    fn smallest(&self) -> f64 {
+        let [one, other] = [self.least, self.most].map(libm::fabs);
+        if self.least * self.most > 0.0 { one.min(other) / one.max(other) } else { 0.0 }
+    }
+}
+
+fn assembly_told(probe: &Probe<'_>, proof: AssemblyProof, senses: &Senses) -> String {
     match proof {
         AssemblyProof::One { boxes } => format!(
             "one: wherever the legs are inside travel the matrix of their rates is regular, proven by {boxes} boxes of axis values"
+        ),
+        AssemblyProof::Open { beside } if senses.agree() => format!(
+            "not proven to be one everywhere (open beside {}), and nothing seen that speaks against it: at {} places inside travel the determinants of the drives' rates have one sign, the smallest {} % of the largest",
+            probe.machine().shown(&beside),
+            senses.places,
+            number(100.0 * senses.smallest(), 1)
         ),
         AssemblyProof::Open { beside } => format!(
             "not proven to be one, in as many boxes of axis values as are looked at: what is left lies beside {}; legs that stand across their way, or in one plane, are singular, and less travel of axes or legs leaves such places out",
@@ -193,7 +228,9 @@ fn back(assembly: &Assembly<'_>, inside: &[Joints], proof: AssemblyProof) -> Str
         let Some(joints) = assembly.forward(&drives, &pair[0]) else {
             continue;
         };
-        let miss = joints.iter().zip(&pair[1]).map(|(a, b)| libm::fabs(a - b));
+        // What moves no leg is not told by them.
+        let moved = assembly.places().iter();
+        let miss = moved.map(|place| libm::fabs(joints[*place] - pair[1][*place]));
         let miss = miss.fold(0.0, f64::max);
         if miss < SAME {
             (found, off) = (found + 1, off.max(miss));

@@ -13,8 +13,8 @@ use super::file::{ControlFile, MachineFile, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{MachineSources, Merged, Source, overlay};
 use super::limits::{
-    MOST_BODIES, MOST_ENTRIES, MOST_FAULTS, MOST_GROUPS, MOST_HEADS, MOST_OFFSETS, MOST_PARAMETERS,
-    MOST_TURNS,
+    MOST_BODIES, MOST_ENTRIES, MOST_FAULTS, MOST_FORMULAS, MOST_GROUPS, MOST_HEADS, MOST_OFFSETS,
+    MOST_PARAMETERS, MOST_TURNS,
 };
 use super::numbers::EvaluatedAt;
 use super::options::take_options;
@@ -285,6 +285,9 @@ struct AxisFreeRules {
     smoothing: SmoothingRules,
 }
 
+/// What helps where the control shows a tip and the chain has none of its words.
+const OF_WORDS: &str = "a chain of the words that the control has, X, Y, Z and the angles of the tool, with a [[drive]] for each joint behind them; or tcp = \"post\", which writes the values of the joints";
+
 impl Builder<'_> {
     pub(super) fn fault(
         &mut self,
@@ -322,9 +325,10 @@ impl Builder<'_> {
         };
         self.seconds(file, &mut axes);
         self.servos(file, &mut axes);
-        let mut limits = self.dependent_limits(&file.limit, &axes);
+        let formulas = self.formulas(&file.formulas, &axes);
+        let mut limits = self.dependent_limits(&file.limit, &formulas, &axes);
         let word_map = self.word_map(&file.word, &axes, &mut limits);
-        limits.extend(self.legs(&file.leg, &axes));
+        limits.extend(self.legs(file, &formulas, &axes));
         let along = self.along(file, &axes);
         let wait = self.wait(&file.wait, &axes);
         let mount = file.workpiece.mount.as_ref();
@@ -535,6 +539,8 @@ impl Builder<'_> {
         self.check_size("[tools]", tools, MOST_ENTRIES);
         let tools = file.tools.outlines.iter().map(|(_, outline)| outline.span());
         self.check_size("[tools]", tools, MOST_ENTRIES);
+        let formulas = file.formulas.keys().map(Spanned::span);
+        self.check_size("[formulas]", formulas, MOST_FORMULAS);
         let fixtures = file.fixture.keys().map(Spanned::span);
         self.check_size("[fixture]", fixtures, MOST_BODIES);
         let words = file.cl.words.keys().map(Spanned::span);
@@ -601,12 +607,13 @@ impl Builder<'_> {
         let moving: BTreeSet<&str> = linear.difference(&standing).copied().collect();
         if moving != BTreeSet::from(TIP_WORDS) && linear != BTreeSet::from(TIP_WORDS) {
             let words = "with tcp = \"control\" the linear words are the tip's X, Y and Z";
+            let few = linear.len() < TIP_WORDS.len();
             let names = linear.into_iter().collect::<Vec<_>>().join(", ");
             let (message, help) = match names.is_empty() {
-                true => (
-                    format!("{words}, and all axes of this machine turn"),
-                    "tcp = \"post\" writes the values of the joints",
-                ),
+                true => (format!("{words}, and all axes of this machine turn"), OF_WORDS),
+                false if few => {
+                    (format!("{words}, but the linear axes are called {names}"), OF_WORDS)
+                }
                 false => (
                     format!("{words}, but the linear axes are called {names}"),
                     "an axis beside X, Y and Z stands while the tool cuts: indexed = … says where, and it keeps its own word; or use tcp = \"post\"",

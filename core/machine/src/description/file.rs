@@ -9,6 +9,7 @@ use serde_json::json;
 use super::bodies::{BodyFile, ClearanceFile};
 use super::bounds::Bounds;
 use super::dependent::LimitFile;
+use super::drives::DriveFile;
 use super::errors::ErrorFile;
 use super::legs::LegFile;
 use super::mode::ModeFile;
@@ -27,6 +28,9 @@ use super::word::WordFile;
 
 /// Names of axes.
 const AXES: Bounds = Bounds::names("^[A-CEI-LPQRU-Z][0-9]*$");
+
+/// Names of formulas.
+const FORMULAS: Bounds = Bounds::names("^[A-Za-z_][A-Za-z0-9_]*$");
 
 /// Names of bodies.
 const BODIES: Bounds =
@@ -95,6 +99,10 @@ keys! {
         limit: Vec<Spanned<LimitFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
         /// Legs that drive the platform of a parallel machine, each `[[leg]]` one.
         leg: Vec<Spanned<LegFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
+        /// Drives behind the axes of the program, each `[[drive]]` one, told by formulas.
+        drive: Vec<Spanned<DriveFile>> = Bounds { default: Some("[]"), ..Bounds::ANY },
+        /// Quantities of axes by names of your own, for drives, limits and one another: `tilt = "acos(cos(A) * cos(B))"`.
+        formulas: BTreeMap<Spanned<String>, Spanned<String>> = FORMULAS,
         /// Coordinates of the control's own, in which whole operations are written.
         mode: ModeFile,
         /// How the program of one channel waits for those of the others.
@@ -554,8 +562,8 @@ keys! {
         /// Arcs and splines of the CL file that stay what they are, and arcs laid through points.
         arcs: ArcsFile,
         /// Where linear axes stand when the tool is retracted, machine coordinates, mm; the end of travel of the depth
-        /// axis away from the part if not said.
-        retract: AxisPositions,
+        /// axis away from the part if not said. `{}`: nothing retracts, as of a wire or of a winder.
+        retract: Option<AxisPositions>,
         /// How the tool leaves the part, and, the other way round, comes to it; by the depth axis alone (retract) if
         /// not said.
         leave: Option<Spanned<LeaveFile>>,

@@ -1,5 +1,7 @@
 //! Where the axes go between the passes: out of the part, to a tool change, at the end.
 
+use std::collections::BTreeMap;
+
 use toml::Spanned;
 
 use super::build::Builder;
@@ -106,11 +108,15 @@ impl Machine {
 impl Builder<'_> {
     /// Takes the positions of `[control]` into a machine whose axes are known.
     pub(super) fn frame(&mut self, said: &ControlFile, machine: &mut Machine) {
-        let retract = self.positions(&said.retract, machine);
+        let said_retract = said.retract.iter().flatten();
+        let retract: Vec<(usize, f64)> = said_retract
+            .filter_map(|(name, value)| self.position(name, value, false, machine))
+            .collect();
         for (place, _) in &retract {
             if machine.axes[*place].joint.rotary {
                 let name = &machine.axes[*place].name;
-                let span = said.retract.keys().find(|key| key.get_ref() == name);
+                let mut keys = said.retract.iter().flat_map(BTreeMap::keys);
+                let span = keys.find(|key| key.get_ref() == name);
                 let message =
                     format!("retract turns {name}: the tool leaves the part by its linear axes");
                 let help = "rotary axes stand where park or change says";
@@ -127,14 +133,15 @@ impl Builder<'_> {
             let mut said = retract.iter();
             said.find(|(joint, _)| *joint == place).copied()
         };
-        let ends = machine.depth_ends().into_iter();
+        let nothing = said.retract.is_some() && retract.is_empty();
+        let ends = if nothing { Vec::new() } else { machine.depth_ends() }.into_iter();
         let depth = ends.map(|end| said_of(end.0).unwrap_or(end)).collect();
         let aside = retract.iter().copied();
         let aside = aside.filter(|(place, _)| !is_depth(machine, *place));
         machine.frame = Frame {
             leave: None,
             room: self.checked(&said.approach_room).unwrap_or(ROOM),
-            retract_said: !retract.is_empty(),
+            retract_said: said.retract.is_some(),
             aside: aside.collect(),
             retract: depth,
             change,
@@ -155,7 +162,7 @@ impl Builder<'_> {
             let help = "distance is above zero, mm";
             self.fault("machine-frame", leave.distance.span(), message, help);
         }
-        if let Some(name) = said.retract.keys().next() {
+        if let Some(name) = said.retract.iter().flat_map(BTreeMap::keys).next() {
             let message = "retract and leave both say how the tool leaves the part".to_owned();
             let help = "what retract says stands behind then = … of leave";
             self.fault("machine-frame", name.span(), message, help);

@@ -9,6 +9,8 @@ use toml::Spanned;
 use super::Axis;
 use super::bounds::Bounds;
 use super::build::Builder;
+use super::file::MachineFile;
+use super::formulas::Formulas;
 use super::keys::axes_are;
 use super::limits::MOST_LEGS;
 use super::quantity::KeyedNumber;
@@ -68,23 +70,48 @@ words! {
 }
 
 impl Builder<'_> {
-    /// The legs, each as the limit that it is to `axes`.
-    pub(super) fn legs(&mut self, file: &[Spanned<LegFile>], axes: &[Axis]) -> Vec<DependentLimit> {
-        self.check_size("[[leg]]", file.iter().map(Spanned::span), MOST_LEGS);
-        let mut legs: Vec<Leg> = Vec::new();
-        for given in file.iter().take(MOST_LEGS) {
-            let Some(leg) = self.leg(given.get_ref(), given.span(), axes) else {
-                continue;
-            };
-            let taken = axes.iter().any(|axis| axis.name == leg.name)
-                || legs.iter().any(|other| other.name == leg.name);
+    /// The legs and drives, each as the limit that it is to `axes`.
+    pub(super) fn legs(
+        &mut self,
+        file: &MachineFile,
+        formulas: &Formulas,
+        axes: &[Axis],
+    ) -> Vec<DependentLimit> {
+        let legs = file.leg.iter().map(|leg| &leg.get_ref().name);
+        let drives = file.drive.iter().map(|drive| &drive.get_ref().name);
+        let names: Vec<&Spanned<String>> = legs.chain(drives).collect();
+        self.check_size("[[leg]]", file.leg.iter().map(Spanned::span), MOST_LEGS);
+        for (place, name) in names.iter().enumerate() {
+            let taken = axes.iter().any(|axis| axis.name == *name.get_ref())
+                || names[..place].iter().any(|other| other.get_ref() == name.get_ref());
             if taken {
-                let message = format!("{} is the name of another axis or leg", leg.name);
-                self.fault(CODE, given.get_ref().name.span(), message, "each has one of its own");
+                let name_text = excerpt(name.get_ref(), SHOWN);
+                let message = format!("{name_text} is the name of another axis or leg");
+                self.fault(CODE, name.span(), message, "each has one of its own");
             }
-            legs.push(leg);
         }
+        let given = file.leg.iter().take(MOST_LEGS);
+        let legs = given.filter_map(|given| self.leg(given.get_ref(), given.span(), axes));
+        let mut legs: Vec<Leg> = legs.collect();
+        legs.extend(self.drives(&file.drive, formulas, axes));
         legs.into_iter().map(DependentLimit::of_leg).collect()
+    }
+
+    /// The travel of a drive that the control shows as `zero` where it stands at zero, mm or radians.
+    pub(super) fn drive_travel(
+        &mut self,
+        travel: Option<&Spanned<[KeyedNumber; 2]>>,
+        unit: f64,
+        zero: f64,
+    ) -> Option<[f64; 2]> {
+        let travel = travel?;
+        let [least, most] = [0, 1].map(|end| self.number(&travel.get_ref()[end]));
+        if least >= most {
+            let message =
+                format!("the travel goes from {least} to {most}: the first must be the smaller");
+            self.fault("machine-travel", travel.span(), message, "travel = [least, most]");
+        }
+        Some([least * unit - zero, most * unit - zero])
     }
 
     fn leg(&mut self, file: &LegFile, span: Range<usize>, axes: &[Axis]) -> Option<Leg> {
@@ -111,16 +138,7 @@ impl Builder<'_> {
         let turns = matches!(drive, Drive::Crank { .. });
         let unit = if turns { 1f64.to_radians() } else { 1.0 };
         let zero = file.zero.as_ref().map_or(0.0, |zero| self.number(zero)) * unit;
-        let travel = file.travel.as_ref().map(|travel| {
-            let [least, most] = [0, 1].map(|end| self.number(&travel.get_ref()[end]));
-            if least >= most {
-                let message = format!(
-                    "the travel goes from {least} to {most}: the first must be the smaller"
-                );
-                self.fault("machine-travel", travel.span(), message, "travel = [least, most]");
-            }
-            [least * unit - zero, most * unit - zero]
-        });
+        let travel = self.drive_travel(file.travel.as_ref(), unit, zero);
         let max_feed = self.checked(&file.max_feed).map_or(f64::INFINITY, |feed| feed * unit);
         Some(Leg {
             name,

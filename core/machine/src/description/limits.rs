@@ -33,6 +33,9 @@ pub(super) const MOST_ERROR_ROWS: usize = 10_000;
 /// Legs: each is held on every way.
 pub(super) const MOST_LEGS: usize = 12;
 
+/// Formulas of axes: each drive works out those that it is written with.
+pub(super) const MOST_FORMULAS: usize = 64;
+
 /// Groups of axes that exclude one another.
 pub(super) const MOST_GROUPS: usize = 32;
 

@@ -13,6 +13,7 @@ use super::keys::axes_are;
 use super::quantity::KeyedNumber;
 use super::table::keys;
 use crate::along_word::AlongWord;
+use crate::axis_formula::FormulaNames;
 use crate::dependent_limit::{DependentLimit, Named, SHOWN};
 use crate::kinematics::{Joints, MAX_AXES};
 use crate::word_map::WordMap;
@@ -221,7 +222,7 @@ impl Builder<'_> {
                 };
                 Some((name.to_owned(), named))
             });
-            let names = names.collect();
+            let names = FormulaNames { named: names.collect(), formulas: Vec::new() };
             limits.push(DependentLimit::new(&keep, inequality, names));
         }
     }

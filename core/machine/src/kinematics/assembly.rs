@@ -5,7 +5,7 @@
 //! middle, `A·J(q)` is regular as far as the changes of the rows of `J` add up to less than one, and these are bounded by
 //! the second derivatives of the drives. A box that is not proven so is halved.
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, SMatrix, SVector};
 
 use super::chain::{Joints, MAX_AXES};
 use super::leg::{AxisRegion, Leg};
@@ -98,6 +98,28 @@ impl<'a> Assembly<'a> {
         None
     }
 
+    /// Places in the chain of the axes that move a leg, in its order.
+    pub fn places(&self) -> &[usize] {
+        &self.places
+    }
+
+    /// The determinant of the drives' rates at axis values, whose sign the platform cannot change within one assembly; none
+    /// where there are more drives than axes, or one of them has no rates.
+    pub fn determinant(&self, joints: &Joints) -> Option<f64> {
+        let count = self.places.len();
+        if self.legs.len() != count {
+            return None;
+        }
+        let mut matrix = DMatrix::zeros(count, count);
+        for (row, leg) in self.legs.iter().enumerate() {
+            let rates = leg.rates(joints)?;
+            for (column, place) in self.places.iter().enumerate() {
+                matrix[(row, column)] = rates[*place];
+            }
+        }
+        Some(matrix.determinant())
+    }
+
     /// By how much the drives are off, a row a leg.
     fn miss(&self, drives: &[f64], joints: &Joints) -> Option<SVector<f64, MOST>> {
         let mut miss = SVector::zeros();
@@ -137,11 +159,8 @@ impl<'a> Assembly<'a> {
                 continue;
             }
             let middle: Joints = std::array::from_fn(|place| 0.5 * (least[place] + most[place]));
-            let moves = |place: &usize| {
-                let leg = self.legs.iter().find(|leg| leg.places().any(|own| own == *place));
-                let reach = leg.map_or(1.0, |leg| leg.reach_of(*place));
-                (most[*place] - least[*place]) * reach
-            };
+            let reach = self.reach(&middle);
+            let moves = |place: &usize| (most[*place] - least[*place]) * reach[*place];
             let widest = self.places.iter().max_by(|a, b| moves(a).total_cmp(&moves(b)));
             let Some(widest) = widest.copied().filter(|_| boxes < MOST_BOXES) else {
                 return AssemblyProof::Open { beside: middle };
@@ -155,6 +174,14 @@ impl<'a> Assembly<'a> {
         AssemblyProof::One { boxes }
     }
 
+    /// How far each axis moves any drive at most, a unit of it, at axis values.
+    fn reach(&self, joints: &Joints) -> Joints {
+        let rates = self.legs.iter().filter_map(|leg| leg.rates(joints));
+        rates.fold([f64::MIN_POSITIVE; MAX_AXES], |reach, rates| {
+            std::array::from_fn(|place| reach[place].max(libm::fabs(rates[place])))
+        })
+    }
+
     /// The rates of the drives keep their rank all over a box.
     fn is_regular(&self, [least, most]: [&Joints; 2]) -> bool {
         let middle: Joints = std::array::from_fn(|place| 0.5 * (least[place] + most[place]));
@@ -164,10 +191,12 @@ impl<'a> Assembly<'a> {
             return false;
         };
         let region = AxisRegion { middle, half, speeds: scales, bends: Joints::default() };
-        let moving = self.places.iter().filter(|place| half[**place] > 0.0).count() as f64;
-        let changes = self.legs.iter().enumerate().map(|(row, leg)| {
-            inverse.column(row).norm() * leg.bounds(&region).together * moving.sqrt()
-        });
+        let moving = self.places.iter().filter(|place| half[**place] > 0.0).count();
+        let changes = self
+            .legs
+            .iter()
+            .enumerate()
+            .map(|(row, leg)| inverse.column(row).norm() * leg.rates_stray(&region, moving));
         changes.sum::<f64>() < 1.0
     }
 }

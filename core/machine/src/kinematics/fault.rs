@@ -76,7 +76,17 @@ impl NoClosedForm {
                     joints.len(),
                     names(joints)
                 ),
-                "share = 0.5 or reserve = true moves a quill along with the axis beside it, indexed = 0 holds an axis during cuts",
+                match ["U", "V"]
+                    .iter()
+                    .all(|guide| joints.iter().any(|joint| name(*joint) == *guide))
+                {
+                    true => {
+                        "indexed = 0 holds U and V during cuts: that a wire leans as they lead its other end is not said by a chain, and its tapers are not posted"
+                    }
+                    false => {
+                        "share = 0.5 or reserve = true moves a quill along with the axis beside it, indexed = 0 holds an axis during cuts"
+                    }
+                },
             ),
             Self::FewAxes { linear, rotary, quills } => (
                 format!(

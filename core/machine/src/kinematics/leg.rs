@@ -13,20 +13,29 @@
 //! For the rod keeps its length: its far end goes across it, and what is left of `P'` then is `P'` laid along `e` on the plane
 //! across the rod, `L / s` times as long at most. Over a region of the axes `P` keeps to a ball, which is carried along the chain as the derivatives are.
 
+use std::sync::Arc;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::chain::{Joint, Joints, MAX_AXES, turn};
 use super::inverse::Solver;
 use super::kept_tip::TcpBlock;
+use crate::axis_formula::{AxisFormula, largest};
 
 /// Halvings of a way before the bound on a speed is taken as it is.
 const DEEPEST: u32 = 18;
+
+/// Pieces of the travel of a drive, in each of which it is looked for whether a rod reaches.
+const LOOKS: u32 = 64;
+
+/// What rounding of the words may take a drive beyond its travel, mm at the rod's end.
+const SURE: f64 = 0.01;
 
 /// A largest speed that was looked into is known so well.
 const CLOSE: f64 = 1.002;
 
 /// What drives a leg.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Drive {
     /// The leg grows: its length, mm.
     Strut,
@@ -54,6 +63,13 @@ pub enum Drive {
         rod: f64,
         /// Of both angles the larger.
         ahead: bool,
+    },
+    /// What a formula of the machine file makes of axis values; the leg has no ends.
+    Formula {
+        /// The drive as the control shows it, mm or degrees.
+        is: Arc<AxisFormula>,
+        /// It is an angle.
+        turns: bool,
     },
 }
 
@@ -91,6 +107,14 @@ pub struct AxisRegion {
     pub speeds: Joints,
     /// Bounds on the second derivatives.
     pub bends: Joints,
+}
+
+impl AxisRegion {
+    /// Least and largest axis values.
+    fn ends(&self) -> [Joints; 2] {
+        [-1.0, 1.0]
+            .map(|side| std::array::from_fn(|place| self.middle[place] + side * self.half[place]))
+    }
 }
 
 /// Where the joint on the platform can be, and how fast it goes.
@@ -154,12 +178,34 @@ impl Slides {
 impl Leg {
     /// Places in the chain of the axes that move it.
     pub fn places(&self) -> impl Iterator<Item = usize> + use<> {
-        self.first..self.first + self.joints.len()
+        let moving = match &self.drive {
+            Drive::Formula { is, .. } => is.axes(),
+            _ => (self.first..self.first + self.joints.len()).fold(0, |bits, at| bits | 1 << at),
+        };
+        (0..MAX_AXES).filter(move |place| moving >> place & 1 == 1)
+    }
+
+    /// Its drive is told by a formula.
+    fn formula(&self) -> Option<&AxisFormula> {
+        match &self.drive {
+            Drive::Formula { is, .. } => Some(is),
+            _ => None,
+        }
+    }
+
+    /// Axis units (mm, radians) in one unit of what the control shows of the axis at a place in the chain.
+    pub fn unit_of(&self, place: usize) -> f64 {
+        let joint = place.checked_sub(self.first).and_then(|place| self.joints.get(place));
+        match self.formula() {
+            Some(formula) => formula.unit(place),
+            None if joint.is_some_and(|joint| joint.rotary) => 1f64.to_radians(),
+            None => 1.0,
+        }
     }
 
     /// The drive turns.
     pub fn turns(&self) -> bool {
-        matches!(self.drive, Drive::Crank { .. })
+        matches!(self.drive, Drive::Crank { .. } | Drive::Formula { turns: true, .. })
     }
 
     /// Drive units (mm, radians) in one unit of what the control shows (mm, degrees).
@@ -189,12 +235,16 @@ impl Leg {
     /// The drive at `joints`, mm or radians (of a crank on the turn about the middle of its travel); none where the rod does
     /// not reach.
     pub fn value(&self, joints: &Joints) -> Option<f64> {
-        self.value_at(self.point(joints))
+        match self.formula() {
+            Some(formula) => Some(formula.value(joints)? * self.unit()),
+            None => self.value_at(self.point(joints)),
+        }
     }
 
     fn value_at(&self, point: Vector3<f64>) -> Option<f64> {
         let arm = point - self.from;
         match self.drive {
+            Drive::Formula { .. } => None,
             Drive::Strut => Some(arm.norm()),
             Drive::Belt { along } => Some(along.dot(&arm)),
             Drive::Slide { along, rod, ahead } => {
@@ -225,6 +275,7 @@ impl Leg {
     fn gradient(&self, point: Vector3<f64>) -> Option<Vector3<f64>> {
         let value = self.value_at(point)?;
         let (rod, way) = match self.drive {
+            Drive::Formula { .. } => return None,
             Drive::Strut => return (point - self.from).try_normalize(1e-9),
             Drive::Belt { along } => return Some(along),
             Drive::Slide { along, .. } => (point - self.from - along * value, along),
@@ -240,6 +291,10 @@ impl Leg {
 
     /// How the drive changes with each axis, by place in the chain.
     pub fn rates(&self, joints: &Joints) -> Option<Joints> {
+        if let Some(formula) = self.formula() {
+            let rates = formula.slope([joints; 2]).rates.map(|[rate, _]| rate * self.unit());
+            return rates.iter().all(|rate| rate.is_finite()).then_some(rates);
+        }
         let mut point = self.to;
         let mut ways = [Vector3::zeros(); MAX_AXES];
         for (place, (joint, value)) in
@@ -308,12 +363,15 @@ impl Leg {
     }
 
     /// Bounds on the derivatives of the drive while the axes stay in a region and go through it as that says.
+    ///
+    /// Of a formula they are not looked for: its rates are bounded where it is asked.
     pub fn bounds(&self, region: &AxisRegion) -> DriveBounds {
         let at = self.platform(region);
         let arm = at.centre - self.from;
         let root = |square: f64| if square > 0.0 { square.sqrt() } else { 0.0 };
         // What the drive gains on its joint, and by what the acceleration and the square of the speed of that count.
         let [gain, bend, turning] = match self.drive {
+            Drive::Formula { .. } => [f64::INFINITY; 3],
             Drive::Strut => {
                 let length = arm.norm() - at.radius;
                 [1.0, 1.0, if length > 0.0 { 1.0 / length } else { f64::INFINITY }]
@@ -355,6 +413,9 @@ impl Leg {
     /// Least and largest value while each axis stays between its values in `ends`; none where it is not proven to have one
     /// all over. Radians may pass the end of a turn.
     pub fn range(&self, [least, most]: [&Joints; 2]) -> Option<[f64; 2]> {
+        if let Some(formula) = self.formula() {
+            return Some(formula.range([least, most])?.map(|end| end * self.unit()));
+        }
         let middle: Joints = std::array::from_fn(|place| 0.5 * (least[place] + most[place]));
         let half: Joints =
             std::array::from_fn(|place| 0.5 * libm::fabs(most[place] - least[place]));
@@ -385,26 +446,62 @@ impl Leg {
         });
         let arm = at.centre - self.from;
         match self.drive {
-            Drive::Strut | Drive::Belt { .. } => false,
+            Drive::Strut | Drive::Belt { .. } | Drive::Formula { .. } => false,
             Drive::Slide { along, rod, .. } => {
                 (arm - along * along.dot(&arm)).norm() - at.radius > rod
+                    || self.travel.is_some_and(|travel| {
+                        misses(&|way| along * way, travel, 1.0, (arm, at.radius + SURE), rod)
+                    })
             }
-            Drive::Crank { arm: crank, rod, .. } => {
+            Drive::Crank { about, arm: crank, rod, .. } => {
                 // The platform's joint is beyond the stretched crank and rod, or nearer than they can fold.
                 let length = crank.norm();
                 arm.norm() - at.radius > length + rod
                     || arm.norm() + at.radius < libm::fabs(length - rod)
+                    || self.travel.is_some_and(|travel| {
+                        let pin = |value: f64| {
+                            let (sine, cosine) = libm::sincos(value);
+                            turn(crank, about, sine, cosine)
+                        };
+                        misses(&pin, travel, length, (arm, at.radius + SURE), rod)
+                    })
             }
         }
     }
 
-    /// How far an axis moves its joint on the platform, mm a mm or a radian, with all axes at zero.
-    pub(super) fn reach_of(&self, place: usize) -> f64 {
-        let joint = place.checked_sub(self.first).and_then(|place| self.joints.get(place));
-        joint.map_or(0.0, |joint| match joint.rotary {
-            true => joint.direction.cross(&(self.to - joint.point)).norm().max(1.0),
-            false => 1.0,
-        })
+    /// How far its rates by the axes may lie from those in the middle of a region, each rate times the speed of its axis there:
+    /// the root of the sum of squares. `moving` axes have a part in it.
+    pub(super) fn rates_stray(&self, region: &AxisRegion, moving: usize) -> f64 {
+        let Some(formula) = self.formula() else {
+            return self.bounds(region).together * (moving as f64).sqrt();
+        };
+        let AxisRegion { middle, speeds, .. } = region;
+        let Some(rates) = self.rates(middle) else {
+            return f64::INFINITY;
+        };
+        let slope = formula.slope(region.ends().each_ref());
+        let strays = slope.rates.iter().enumerate().map(|(place, bounds)| {
+            let stray = largest(bounds.map(|end| end * self.unit() - rates[place])) * speeds[place];
+            stray * stray
+        });
+        strays.sum::<f64>().sqrt()
+    }
+
+    /// Bounds on its speed while axes between their values in `ends` go by `ways` with second derivatives `bends`, by a share
+    /// from 0 to 1: of a formula, what its rates bring together.
+    fn speed_by_rates(&self, ends: [&Joints; 2], ways: &Joints, bends: &Joints) -> Option<f64> {
+        let slope = self.formula()?.slope(ends);
+        let mut speed = [0.0; 2];
+        for (place, rate) in slope.rates.iter().enumerate().filter(|(_, rate)| **rate != [0.0; 2]) {
+            let ends = [-0.5, 0.5].map(|side| ways[place] + side * bends[place]);
+            let parts = rate.iter().flat_map(|rate| ends.map(|way| rate * way));
+            // Where an axis stands it does not matter how the drive would change with it.
+            let parts: Vec<f64> =
+                parts.map(|part| if part.is_nan() { 0.0 } else { part }).collect();
+            speed[0] += parts.iter().copied().fold(f64::INFINITY, f64::min);
+            speed[1] += parts.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        }
+        Some(largest(speed.map(|end| end * self.unit())))
     }
 
     /// A bound on the speed of the drive along a way, by the share of it, at most 0.2 % too large but where a rod comes to
@@ -435,12 +532,12 @@ impl Leg {
         let [first, last] = &piece.ends;
         let bends_here: Joints = std::array::from_fn(|place| bends[place] * length * length);
         let way = |place: usize| libm::fabs(last[place] - first[place]);
-        let bounds = self.bounds(&AxisRegion {
+        let region = AxisRegion {
             middle: std::array::from_fn(|place| 0.5 * (first[place] + last[place])),
             half: std::array::from_fn(|place| 0.5 * way(place) + bends_here[place] / 8.0),
             speeds: std::array::from_fn(|place| way(place) + 0.5 * bends_here[place]),
             bends: bends_here,
-        });
+        };
         let changes = match [first, last].map(|end| self.value(end)) {
             [Some(first), Some(last)] if self.turns() => {
                 libm::fabs(libm::remainder(last - first, std::f64::consts::TAU))
@@ -449,7 +546,14 @@ impl Leg {
             _ => return f64::INFINITY,
         };
         *certain = certain.max(changes / length);
-        let bound = bounds.first.min(changes + 0.5 * bounds.second) / length;
+        let ways = std::array::from_fn(|place| last[place] - first[place]);
+        let bound = match self.speed_by_rates(region.ends().each_ref(), &ways, &bends_here) {
+            Some(speed) => speed / length,
+            None => {
+                let bounds = self.bounds(&region);
+                bounds.first.min(changes + 0.5 * bounds.second) / length
+            }
+        };
         if bound <= enough.max(*certain * CLOSE) || halvings == 0 {
             return bound;
         }
@@ -472,6 +576,23 @@ impl Leg {
         }
         first.max(of(&halves[1], certain))
     }
+}
+
+/// Nowhere in its travel does the other end of a rod, `end` (mm, at most `gain` mm a unit of the drive), stand a rod's length
+/// from a ball.
+fn misses(
+    end: &dyn Fn(f64) -> Vector3<f64>,
+    [least, most]: [f64; 2],
+    gain: f64,
+    (centre, radius): (Vector3<f64>, f64),
+    rod: f64,
+) -> bool {
+    let step = (most - least) / f64::from(LOOKS);
+    (0..LOOKS).all(|place| {
+        let value = least + (f64::from(place) + 0.5) * step;
+        let off = libm::fabs((centre - end(value)).norm() - rod);
+        off > radius + 0.5 * step * gain
+    })
 }
 
 /// A piece of a way between two shares of it, and the axis values there.

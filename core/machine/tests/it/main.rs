@@ -11,6 +11,7 @@ mod declared;
 mod dependent_limit;
 mod derivatives;
 mod errors;
+mod formulas;
 mod freedom;
 mod kept_tip;
 mod kinematics;

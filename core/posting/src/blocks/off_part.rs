@@ -196,8 +196,13 @@ impl BlockStage<'_> {
             }
             let (now, then) = (axis.reading(joints[*joint]), axis.reading(*position));
             let leans = angle(self.in_machine(placer, node), machine.tool_axis).to_degrees();
+            let chain = placer.solver().chain();
+            let across = libm::fabs(chain.way_of(*joint, joints).dot(&chain.forward(joints).axis));
+            let across = across < SIDEWAYS;
             let name = &axis.name;
             self.findings.at(line, match machine.frame.retract_said {
+                // The machine file names the position and answers for the way to it.
+                true if across => continue,
                 true if leans < 90.0 => Diagnostic::error(
                     "retract",
                     format!("{name} stands at {now:.3} mm, and [control] retract = {then:.3} mm would bring the tool down"),
@@ -205,6 +210,11 @@ impl BlockStage<'_> {
                 .help("put the retract beyond what the program reaches"),
                 // The machine file names the position and answers for the way to it.
                 true => continue,
+                false if across => Diagnostic::error(
+                    "retract",
+                    format!("{name} goes across the tool: {then:.3} mm, the end of its travel, is not proven to lead away from the part"),
+                )
+                .help("[control] retract = {} where nothing retracts (a wire, a winder), retract = { … } or leave = … where something does"),
                 false => Diagnostic::error(
                     "retract",
                     format!("the tool leans by {leans:.1}°: {name} at {then:.3} mm, the end of its travel, is not proven to lead it away from the part"),

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use post_machine::dependent_limit::DependentLimit;
 use post_machine::description::{RapidAxes, Tcp};
-use post_machine::kinematics::{Joints, MAX_AXES};
+use post_machine::kinematics::{Joints, Leg, MAX_AXES};
 
 use super::EmitStage;
 use super::frame::AxisRole;
@@ -12,6 +12,7 @@ use crate::accuracy::Placer;
 use crate::blocks::{BlockKind, BlockReason, MotionBlock};
 use crate::curve::PrintedCurve;
 use crate::refusal;
+use crate::report::DriveRange;
 
 /// Where the axes stand, as far as the program has told them.
 #[derive(Clone, Debug, Default)]
@@ -20,8 +21,32 @@ pub(super) struct LimitWatch {
     at: Joints,
     /// Axes that the program has moved to a place, one bit each.
     known: u8,
+    /// Where the drives that are no axes came to.
+    pub drives: Vec<DriveRange>,
     /// What solves the points where the control keeps the tip.
     pub placer: Option<Rc<Placer>>,
+}
+
+impl LimitWatch {
+    /// A drive comes to where the axes stand.
+    fn note(&mut self, leg: &Leg) {
+        let Some(value) = leg.value(&self.at).map(|value| leg.reading(value)) else {
+            return;
+        };
+        match self.drives.iter_mut().find(|drive| drive.name == leg.name) {
+            Some(drive) => {
+                drive.min = drive.min.min(value);
+                drive.max = drive.max.max(value);
+            }
+            None => self.drives.push(DriveRange {
+                name: leg.name.clone(),
+                unit: if leg.turns() { "deg" } else { "mm" },
+                min: value,
+                max: value,
+                travel: leg.travel.map(|travel| travel.map(|end| leg.reading(end))),
+            }),
+        }
+    }
 }
 
 /// How axes come from one place to another.
@@ -114,6 +139,9 @@ impl EmitStage<'_> {
                 (false, true) => Some(to).filter(|to| !limit.holds(to)),
                 (false, false) => None,
             };
+            if let (Some(leg), true) = (limit.leg(), all(self.limits.known)) {
+                self.limits.note(leg);
+            }
             if let Some(place) = passed {
                 let ends = limit.holds(&from) && limit.holds(&to);
                 let behind = if ends { ", between the ends of this motion" } else { "" };

@@ -27,6 +27,7 @@ use crate::findings::Findings;
 use crate::job_facts::JobFacts;
 use crate::observer::{Observers, TextSink};
 use crate::program::Command;
+use crate::report::DriveRange;
 use crate::stream::StreamItem;
 use cycles::{CommandedCycle, CycleWordPlaces};
 pub(crate) use extremes::Extremes;
@@ -145,6 +146,11 @@ impl<'a> EmitStage<'a> {
     /// Extremes so far.
     pub(crate) fn extremes(&self) -> &Extremes {
         &self.extremes
+    }
+
+    /// Where the drives that are no axes came to.
+    pub(crate) fn drives(&self) -> &[DriveRange] {
+        &self.limits.drives
     }
 
     /// Lines of text so far.

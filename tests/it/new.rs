@@ -23,6 +23,7 @@ const CLASSES: &[&str] = &[
     "lathe-xzc",
     "mill-turn",
     "robot",
+    "linear-delta",
 ];
 
 fn folder() -> TempDir {
@@ -53,6 +54,7 @@ fn every_class_passes_the_check_and_makes_a_program() {
             kind.replace("nutating-head", "nutating").replace("table-table-nutating", "nutating");
         let kind = kind.replace("lathe-xzc", "rotary table C").replace("mill-turn", "head-table");
         let kind = kind.replace("robot", "six-axis");
+        let kind = kind.replace("linear-delta", "leg J2");
         let kind = ["-ac", "-bc", "-ba"].iter().fold(kind, |kind, end| kind.replace(end, ""));
         assert!(check.out.contains(&kind), "{kind} is not in:\n{}", check.out);
         fs::write(folder.path().join("part.cls"), JOB).unwrap();

@@ -39,6 +39,8 @@ pub enum Class {
     MillTurn,
     /// A robot's arm with parallel shoulder and spherical wrist: A B C U V W are its axes 1 to 6.
     Robot,
+    /// A delta: three carriages on upright rails, and rods to a platform that stays upright.
+    LinearDelta,
 }
 
 /// The seven lengths of an arm, as they are published for it, mm: their names and what they are, the arm stretched straight up.
@@ -171,6 +173,7 @@ impl Class {
             Self::LatheXzc => "[w C' b Z X (S) t]",
             Self::MillTurn => "[w C' b Z X Y B (S) t]",
             Self::Robot => "[w b A B C U V W (S) t]",
+            Self::LinearDelta => "[w b X Y Z (S) t]",
         }
     }
 
@@ -218,7 +221,7 @@ impl Class {
 
     fn rotary(self) -> Vec<Rotary> {
         match self {
-            Self::ThreeAxis => vec![],
+            Self::ThreeAxis | Self::LinearDelta => vec![],
             Self::FourAxisA => vec![table("A", "[1, 0, 0]")],
             Self::FourAxisB => vec![table("B", "[0, 1, 0]")],
             Self::TableTableAc => vec![TABLE_C, tilting("A", "[1, 0, 0]", [-120.0, 30.0])],
@@ -247,7 +250,7 @@ impl Class {
 
     /// It has any rotary axis.
     pub fn turns(self) -> bool {
-        self != Self::ThreeAxis
+        !matches!(self, Self::ThreeAxis | Self::LinearDelta)
     }
 
     /// Its control may keep the tip, which takes words X, Y and Z.
@@ -299,6 +302,7 @@ impl Class {
             "X" if self == Self::MillTurn => Some([-LATHE_X - 280.0, 20.0]),
             "X" if self.is_lathe() => Some([-LATHE_X - 20.0, 20.0]),
             "Y" if self.is_lathe() => Some([-100.0, 100.0]),
+            "X" | "Y" if self == Self::LinearDelta => Some([-150.0, 150.0]),
             "X" | "Y" => Some([-300.0, 300.0]),
             // From the upper end down to the table's face.
             "Z" => Some([-gauge.abs().max(1.0), 0.0]),
@@ -325,6 +329,9 @@ pub fn write(choices: &Choices) -> String {
     parameters(&mut line, choices);
     linear_axes(&mut line, choices);
     rotary_axes(&mut line, choices);
+    if choices.class == Class::LinearDelta {
+        carriages(&mut line);
+    }
     control(&mut line, choices);
     line("", "");
     line("# [spindle]", "");
@@ -414,6 +421,11 @@ fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         let axis = choices.class.axis_at(parameter);
         axis.is_some_and(|axis| given(&choices.point, axis).is_none())
     };
+    if choices.class == Class::LinearDelta {
+        line("rail  = 200", "from the middle to the joints on the carriages, square to the rails");
+        line("hub   = 40", "from there to the joints on the platform");
+        line("rod   = 420", "between both joints");
+    }
     if asked("pivot") {
         line(
             &format!("pivot = {}", choices.pivot),
@@ -505,6 +517,25 @@ fn rotary_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         travel(line, choices, name);
         reversed(line, choices, name);
         line(&format!("max_feed = {}", feed(choices, name, 3600.0)), "deg/min");
+    }
+}
+
+/// What drives the platform of a delta.
+fn carriages(line: &mut impl FnMut(&str, &str)) {
+    for (leg, angle) in [90, 210, 330].into_iter().enumerate() {
+        let joint = |radius: &str| {
+            format!("[\"{radius} * cos({angle})\", \"{radius} * sin({angle})\", \"gauge + 100\"]")
+        };
+        line("", "");
+        line("[[leg]]", "");
+        line(&format!("name     = \"J{leg}\""), "its drive, as the control calls it");
+        line(&format!("from     = {}", joint("rail")), "its joint on the carriage, that at zero");
+        line("slide    = [0, 0, 1]", "the rail: the way in which the drive counts plus");
+        line("rod      = \"rod\"", "measured joint to joint");
+        line("at       = \"Z\"", "the platform");
+        line(&format!("to       = {}", joint("hub")), "its joint there, all axes at zero");
+        line("travel   = [\"-gauge\", \"rod\"]", "mm");
+        line("max_feed = 20000", "mm/min");
     }
 }
 

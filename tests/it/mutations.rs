@@ -217,7 +217,7 @@ impl Job {
         let cut_off = report.cycle_cut_off;
         faults.extend(cut_off.map(|line| (Some(line), "the cycle is cut off".to_owned())));
         match &report.end {
-            Some(end) if end.in_force.is_empty() => {}
+            Some(end) if end.modes.is_empty() => {}
             end => faults.push((None, format!("ends with {end:?}"))),
         }
         let unretracted = report.unretracted.iter();

@@ -81,6 +81,7 @@ fn of_programs_of_others_nothing_is_told_that_cannot_be_left_out() {
             all.extend(words.iter().map(|word| (*word).to_owned()));
             all.extend(["--json", "found.json"].map(str::to_owned));
             all.extend_from_slice(more);
+            let all: Vec<&str> = all.iter().map(String::as_str).collect();
             let run = post_in(folder.path(), &all);
             assert!(run.code < 2, "{}: {}", path.display(), run.err);
             let text = fs::read_to_string(folder.path().join("found.json"));

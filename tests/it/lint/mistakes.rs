@@ -49,7 +49,7 @@ const KINDS: [Kind; 12] = [
     Kind {
         name: "a feed with two more digits",
         floor: 0,
-        spoil: |line, _| feed(line, |feed| format!("{}00", feed.trim_end_matches('.'))),
+        spoil: |line, _| feed(line, |feed| (100.0 * feed.parse::<f64>().unwrap()).to_string()),
     },
     Kind {
         name: "a digit of an arc's centre",
@@ -143,7 +143,8 @@ fn feed(line: &str, change: impl Fn(&str) -> String) -> Option<String> {
 }
 
 fn dry(line: &str, rng: &mut Rng) -> Option<String> {
-    number(line, "XYZ", rng).map(|_| format!("{line} M9"))
+    let rapid = ["G53", "G0 ", "G43", "FMAX", "R0"].iter().any(|word| line.contains(word));
+    number(line, "XYZ", rng).filter(|_| !rapid).map(|_| format!("{line} M9"))
 }
 
 fn other_length(line: &str, _: &mut Rng) -> Option<String> {

@@ -33,6 +33,9 @@ use watch::LintWatch;
 pub use sarif::{CodeText, sarif};
 pub use summary::{FindingSummary, LintSummary};
 
+/// One rapid of so many has a feed beside it by mistake; where more have, the post-processor writes it so.
+const FEW: u64 = 3;
+
 /// What was found of a program.
 pub struct LintedProgram<'m> {
     /// What is wrong with it, and what may be: in the order of its lines.
@@ -116,6 +119,7 @@ pub fn look_over<'m>(
     found.extend(beyond.findings(name));
     found.extend(beyond.part_place(machine, name));
     found.extend(watch.finish(name));
+    found.extend(fed_rapid(name, &report, &survey));
     if let Some(clear) = clear {
         // What cannot be read of it was told.
         let told = found.len();
@@ -140,6 +144,20 @@ pub fn look_over<'m>(
     text.rewind().map_err(unreadable)?;
     show_lines(&mut findings, name, &mut text).map_err(unreadable)?;
     Ok(LintedProgram { findings, ignored: counts, survey, report, predicted: None })
+}
+
+/// A rapid in whose block a feed stands, where few have one.
+fn fed_rapid(name: &str, report: &ReadReport, survey: &ProgramSurvey<'_>) -> Option<Diagnostic> {
+    let (line, count) = report.fed_rapids?;
+    if count * FEW > survey.motions[0] {
+        return None;
+    }
+    let message = match count {
+        1 => "a rapid says a feed, and others say none: is it a cut?".to_owned(),
+        count => format!("{count} rapids say a feed, and others say none: are they cuts?"),
+    };
+    let place = Some(SourcePlace::new(name, line, "", 0..0));
+    Some(Diagnostic::warning("rapid", message).help("G1 where something is cut").at(place))
 }
 
 /// The findings, those that say the same as one that names the first of them.

@@ -164,6 +164,9 @@ impl<'m> LintWatch<'m> {
                 }
                 self.new_tool = true;
             }
+            BlockEffect::Event { event: ProgramEvent::Coolant(flows), .. } => {
+                self.cooled |= *flows != Coolants::default();
+            }
             _ => {}
         }
     }

@@ -445,6 +445,8 @@ impl ControlState {
         self.relies_on_nothing_left();
         if kind == MotionKind::Feed {
             self.relies_on(ModalGroup::Feed);
+        } else if words.present & bit(b'F') != 0 {
+            self.report.fed_rapids.get_or_insert((self.line, 0)).1 += 1;
         }
         if self.state.compensation != 0 {
             self.relies_on(ModalGroup::Plane);

@@ -51,6 +51,7 @@ VERBS = [
         "part.json",
         "part.html",
     ),
+    _verb("lint", f"lint given.nc -m {MACHINE} --json part.json --sarif part.sarif", "part.json", "part.sarif"),
     _verb("read", f"read given.nc -m {MACHINE} --csv rows.csv", "rows.csv"),
     _verb(
         "predict",

@@ -91,7 +91,9 @@ pub fn run(session: &Session, arguments: &LintArguments) -> Result<(), Failure> 
         let name = &program.name;
         let source = Box::new(program.text()?);
         let mut linted = lint::look_over(&control, &finder, name, source, &arguments.ignore)?;
-        linted.predicted = cycle_time(&control, name, Box::new(program.text()?))?;
+        if linted.whole {
+            linted.predicted = cycle_time(&control, name, Box::new(program.text()?))?;
+        }
         wrong |= linted.is_wrong(arguments.strict);
         if !text.is_empty() {
             text.push('\n');

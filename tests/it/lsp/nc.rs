@@ -122,6 +122,20 @@ fn what_hits_something_is_told_where_a_program_is_opened_or_saved() {
 }
 
 #[test]
+fn what_is_wrong_with_a_program_is_told_where_it_is_opened() {
+    let uri = "file:///nowhere/part.nc";
+    let program = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z0.\nT1 M6\nS1000\nG54\nG0 X0. Y0.\nG43 H1 Z50.\n\
+                   G1 Z2. F500.\nG0 Z50.\nG53 G0 Z0.\nM30\n%\n";
+    let mut client = Client::new(&["--machine", "vmc"], &json!({ "toolLength": 100 }));
+    client.open(uri, "plaintext", program);
+    let stands = |found: &[Value]| {
+        found.iter().any(|one| one["code"] == "spindle" && one["range"]["start"]["line"] == 9)
+    };
+    let found = client.findings_if(uri, 1, |found| stands(found));
+    assert!(stands(&found));
+}
+
+#[test]
 fn a_program_that_cannot_be_read_says_where_and_loops_end() {
     let uri = "file:///nowhere/part.nc";
     let mut client = Client::new(&["--machine", "vmc"], &json!({}));

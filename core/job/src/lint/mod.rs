@@ -46,6 +46,8 @@ pub struct LintedProgram<'m> {
     pub survey: ProgramSurvey<'m>,
     /// What was read.
     pub report: ReadReport,
+    /// Each of its blocks was understood.
+    pub whole: bool,
     /// How long it takes, s, where that was predicted.
     pub predicted: Option<f64>,
 }
@@ -86,13 +88,15 @@ pub fn look_over<'m>(
     // What no two bodies tell is not known, and no fault of the program.
     let clear = clear.filter(|clear| !clear.pairs.is_empty());
     let stock = |row: &PairRow| row.names.iter().any(|name| name == "stock");
+    let mut before: Vec<Diagnostic> = Vec::new();
     let depths = match clear.as_ref().is_some_and(|clear| clear.pairs.iter().any(stock)) {
         // Bodies tell it better.
         true => None,
         false => {
             let mut depths = CutDepths::default();
             text.rewind().map_err(unreadable)?;
-            run(control, name, &mut text, |done| done.map_or((), |done| depths.gather(done)))?;
+            let gather = |done: Option<&BlockEffect>| done.map_or((), |done| depths.gather(done));
+            before = run(control, name, &mut text, gather)?.faults;
             Some(depths)
         }
     };
@@ -109,6 +113,7 @@ pub fn look_over<'m>(
         survey.take(done);
     })?;
     let RanProgram { report, faults, last_line } = ran;
+    let whole = faults.is_empty();
     let mut found = faults;
     found.extend(report.notes.iter().cloned());
     let unsaid = Unsaid { name, report: &report, spoken: &control.spoken, own: false, last_line };
@@ -120,18 +125,29 @@ pub fn look_over<'m>(
     found.extend(beyond.part_place(machine, name));
     found.extend(watch.finish(name));
     found.extend(fed_rapid(name, &report, &survey));
-    if let Some(clear) = clear {
-        // What cannot be read of it was told.
-        let told = found.len();
-        let news = clear.findings.into_iter().filter(|finding| !found[..told].contains(finding));
-        let news: Vec<Diagnostic> = news.collect();
-        found.extend(news);
-    }
-    let is_ignored = |finding: &Diagnostic| {
+    before.extend(clear.map(|clear| clear.findings).unwrap_or_default());
+    // What cannot be read of it was told, but for a disk that fails in one of the passes.
+    let told = found.len();
+    before.retain(|finding| !found[..told].contains(finding));
+    found.append(&mut before);
+    let (findings, ignored) = left_out(found, |code| {
         let mut codes = ignored.iter().chain(&machine.lint_ignored);
-        codes.any(|code| code == finding.code)
-    };
-    let (left_out, findings): (Vec<_>, Vec<_>) = found.into_iter().partition(is_ignored);
+        codes.any(|ignored| ignored == code)
+    });
+    let mut findings = told_once(findings);
+    findings.sort_by_key(|finding| finding.place.as_ref().map_or(0, |place| place.line));
+    text.rewind().map_err(unreadable)?;
+    show_lines(&mut findings, name, &mut text).map_err(unreadable)?;
+    Ok(LintedProgram { findings, ignored, survey, report, whole, predicted: None })
+}
+
+/// The findings whose codes are not ignored, and how many there are of each code that is.
+fn left_out(
+    found: Vec<Diagnostic>,
+    is_ignored: impl Fn(&str) -> bool,
+) -> (Vec<Diagnostic>, Vec<(&'static str, u64)>) {
+    let (left_out, findings): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|finding| is_ignored(finding.code));
     let mut counts: Vec<(&'static str, u64)> = Vec::new();
     for finding in left_out {
         match counts.iter_mut().find(|(code, _)| *code == finding.code) {
@@ -139,11 +155,7 @@ pub fn look_over<'m>(
             None => counts.push((finding.code, 1)),
         }
     }
-    let mut findings = told_once(findings);
-    findings.sort_by_key(|finding| finding.place.as_ref().map_or(0, |place| place.line));
-    text.rewind().map_err(unreadable)?;
-    show_lines(&mut findings, name, &mut text).map_err(unreadable)?;
-    Ok(LintedProgram { findings, ignored: counts, survey, report, predicted: None })
+    (findings, counts)
 }
 
 /// A rapid in whose block a feed stands, where few have one.

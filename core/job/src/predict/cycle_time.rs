@@ -11,10 +11,10 @@ use crate::nc_program::{NcControl, ProgramText};
 const TOGETHER: usize = 64;
 
 /// How long the program `name` in `text` takes, s; none where the machine file does not say how fast its axes get up to
-/// speed, a block cannot be read, or the axes cannot follow.
+/// speed, or the axes cannot follow.
 ///
 /// # Errors
-/// The machine cannot be solved.
+/// The machine cannot be solved, or a block cannot be read.
 pub fn cycle_time(
     control: &NcControl,
     name: &str,
@@ -39,6 +39,6 @@ pub fn cycle_time(
             }
         }
     }
-    let (run, _) = trajectory.end();
-    Ok(run.faults().is_empty().then_some(seconds))
+    let faults = trajectory.end().0.into_faults();
+    if faults.is_empty() { Ok(Some(seconds)) } else { Err(faults.into()) }
 }

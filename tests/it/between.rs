@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{Run, post};
+use crate::common::{Run, post, post_in};
 
 /// Posts a CL file with these further arguments; the program, or what was said.
 fn posted(cl: &str, more: &[&str]) -> (Run, String) {
@@ -53,12 +53,55 @@ fn the_tool_is_retracted_between_operations_on_two_sides() {
         assert!(retract < turn, "{tcp}: {text}");
         // What runs stays on: it is the same tool.
         assert!(!second[..turn].contains("M5\n") && !second[..turn].contains("M9\n"), "{text}");
-        // No farther apart than faces are: the way of the CAM system.
+        // No farther apart than faces are: the way of the CAM system, if that turns the tool at all.
         let near = SIDES.replace("GOTO/0,-100,10,0,-1,0", "GOTO/0,-100,10,0,-0.5,0.8660254");
-        let (run, text) = posted(&near, &job);
-        assert_eq!(run.code, 0, "{tcp}: {}", run.err);
-        let second = text.split("* - B").nth(1).unwrap();
-        assert!(second.find("M91").unwrap() > second.find("B+30").unwrap(), "{text}");
+        let turns = near.replace("GOTO/0,30,20\n", "GOTO/0,30,20,0,0.1,0.9949874\n");
+        for (cl, retracted) in [(near, true), (turns, false)] {
+            let (run, text) = posted(&cl, &job);
+            assert_eq!(run.code, 0, "{tcp}: {}", run.err);
+            let second = text.split("* - B").nth(1).unwrap();
+            let before = second.find("M91").unwrap() < second.find("B+30").unwrap();
+            assert_eq!(before, retracted, "{text}");
+        }
+    }
+}
+
+/// Behind an operation whose tool axis stands the tool is retracted before it comes to another axis, however near; behind one
+/// that turns it the way is that of the CAM system up to 45°.
+#[test]
+fn the_tool_is_retracted_between_two_orientations() {
+    let folder = tempfile::tempdir().unwrap();
+    let operation = |[from, to]: [f64; 2]| {
+        let at = |x: f64, out: f64, angle: f64| {
+            let (sine, cosine) = libm::sincos(angle.to_radians());
+            let (y, z) = (0.0, 40.0 + out * cosine);
+            format!("GOTO/{:.4},{y},{z:.4},{sine:.7},0,{cosine:.7}\n", x + out * sine)
+        };
+        format!(
+            "TOOL PATH/A,TOOL,M\nTLDATA/MILL,10,0,100,0,0\nLOAD/TOOL,3\nSPINDL/RPM,6000,CLW\nRAPID\n{}\
+             RAPID\n{}FEDRAT/MMPM,800\n{}RAPID\n{}END-OF-PATH\n",
+            at(-40.0, 30.0, from),
+            at(-40.0, 2.0, from),
+            at(40.0, 2.0, to),
+            at(40.0, 30.0, to)
+        )
+    };
+    for (first, second, retracted) in [
+        ([0.0, 0.0], [0.0, 0.0], 2),
+        ([0.0, 0.0], [1.0, 1.0], 3),
+        ([0.0, 0.0], [35.0, 35.0], 3),
+        ([20.0, 20.0], [20.0, 40.0], 2),
+        ([10.0, 0.0], [35.0, 35.0], 2),
+        ([10.0, 0.0], [50.0, 50.0], 3),
+    ] {
+        fs::write(folder.path().join("a.cls"), operation(first) + &operation(second)).unwrap();
+        let words = ["-m", "xyzbc-trt", "a.cls", "-o", "a.ngc", "-q", "--verify"];
+        let more = ["--tool-length", "40", "--mount", "0,0,-80"];
+        let run = post_in(folder.path(), &[&words[..], &more].concat());
+        assert_eq!(run.code, 0, "{}", run.err);
+        let program = fs::read_to_string(folder.path().join("a.ngc")).unwrap();
+        let found = program.matches("G53 G0 Z").count();
+        assert_eq!(found, retracted, "{first:?} {second:?}: {program}");
     }
 }
 

@@ -215,17 +215,22 @@ fn walls_anywhere_are_kept_clear_of_or_refused() {
 fn ways_of_its_own_keep_off_the_part() {
     let (rounds, mut rng) = randomised(9, 89);
     for _ in rounds {
-        let folder = walled([[-10.0, -290.0, 65.0], [10.0, 290.0, rng.range(70.0, 200.0)]]);
-        let stock = format!("stock.block=[[-20,-60,0],[20,60,{:.1}]]", rng.range(60.0, 140.0));
-        let keep = rng.range(0.6, 6.0);
+        // The part stands between the facets, and the wall out of all ways.
+        let folder = walled([[-299.0, -299.0, 65.0], [-290.0, -290.0, 70.0]]);
+        let (high, keep) = (rng.range(60.0, 140.0), rng.range(0.0, 6.0));
+        let file = folder.path().join("m.toml");
+        let machine = fs::read_to_string(&file).unwrap();
+        let part = format!("[[-20, -60, 0], [20, 60, {high:.1}]]");
+        let machine = machine.replace("[[-150, -20, 0], [150, 20, 30]]", &part);
+        assert!(machine.contains(&part));
+        fs::write(file, machine.replace("keep = 1", &format!("rapid = {keep:.2}"))).unwrap();
         for option in [LOW, LINK] {
-            let rapid = format!("clearance.rapid={keep:.2}");
-            let more = ["--set", stock.as_str(), "--set", rapid.as_str()];
-            made(&folder, "sides.cls", &[&option[..], &more].concat());
+            let (_, summary) = made(&folder, "sides.cls", &option);
+            assert_eq!(summary["ways_across"]["as_ever"], 0, "{summary}");
             let rapid = format!("clearance.rapid={:.2}", keep + 0.48);
-            let words = ["clearance", "f.nc", "-m", "m.toml", "--set", &stock, "--set", &rapid];
+            let words = ["clearance", "f.nc", "-m", "m.toml", "--set", &rapid];
             let proof = post_in(folder.path(), &words);
-            assert_eq!(proof.code, 0, "{keep} {stock} {}{}", proof.out, proof.err);
+            assert_eq!(proof.code, 0, "{keep} {high} {}{}", proof.out, proof.err);
         }
     }
 }
@@ -260,7 +265,8 @@ fn rapids_of_one_orientation_are_as_low_as_the_part_lets_them() {
         };
         assert_eq!(cuts(&ever).len(), cuts(&low).len());
         let (ever, low) = (ever.lines().count(), low.lines().count());
-        assert!(low <= ever, "{low} {ever}");
+        // One line more says of which length the tool must be.
+        assert!(low <= ever + 1, "{low} {ever}");
     }
 }
 
@@ -290,44 +296,5 @@ fn without_a_stock_no_way_is_shortened() {
         assert_eq!(run.code, 1, "{}", run.err);
         assert_contains(&run.err, &["no [stock] is drawn"]);
         assert!(!folder.path().join("part.nc").exists());
-    }
-}
-
-/// Behind an operation whose tool axis stands the tool is retracted before it comes to another axis, however near; behind one
-/// that turns it the way is that of the CAM system up to 45°.
-#[test]
-fn the_tool_is_retracted_between_two_orientations() {
-    let folder = tempfile::tempdir().unwrap();
-    let operation = |[from, to]: [f64; 2]| {
-        let at = |x: f64, out: f64, angle: f64| {
-            let (sine, cosine) = libm::sincos(angle.to_radians());
-            let (y, z) = (0.0, 40.0 + out * cosine);
-            format!("GOTO/{:.4},{y},{z:.4},{sine:.7},0,{cosine:.7}\n", x + out * sine)
-        };
-        format!(
-            "TOOL PATH/A,TOOL,M\nTLDATA/MILL,10,0,100,0,0\nLOAD/TOOL,3\nSPINDL/RPM,6000,CLW\nRAPID\n{}\
-             RAPID\n{}FEDRAT/MMPM,800\n{}RAPID\n{}END-OF-PATH\n",
-            at(-40.0, 30.0, from),
-            at(-40.0, 2.0, from),
-            at(40.0, 2.0, to),
-            at(40.0, 30.0, to)
-        )
-    };
-    for (first, second, retracted) in [
-        ([0.0, 0.0], [0.0, 0.0], 2),
-        ([0.0, 0.0], [1.0, 1.0], 3),
-        ([0.0, 0.0], [35.0, 35.0], 3),
-        ([20.0, 20.0], [20.0, 40.0], 2),
-        ([10.0, 0.0], [35.0, 35.0], 2),
-        ([10.0, 0.0], [50.0, 50.0], 3),
-    ] {
-        fs::write(folder.path().join("a.cls"), operation(first) + &operation(second)).unwrap();
-        let words = ["-m", "xyzbc-trt", "a.cls", "-o", "a.ngc", "-q", "--verify"];
-        let more = ["--tool-length", "40", "--mount", "0,0,-80"];
-        let run = post_in(folder.path(), &[&words[..], &more].concat());
-        assert_eq!(run.code, 0, "{}", run.err);
-        let program = fs::read_to_string(folder.path().join("a.ngc")).unwrap();
-        let found = program.matches("G53 G0 Z").count();
-        assert_eq!(found, retracted, "{first:?} {second:?}: {program}");
     }
 }

@@ -106,6 +106,19 @@ impl RapidRun<'_> {
     }
 }
 
+/// The last point of a cut; none of what is none.
+fn end_of_cut(element: &StreamItem<ChosenPoint>) -> Option<&ChosenPoint> {
+    let last = match element {
+        StreamItem::Curve { curve, .. } => curve.moves.last()?,
+        element => element,
+    };
+    let StreamItem::Point(point) = last else {
+        return None;
+    };
+    let cuts = point.motion.pace != MoveFeed::Rapid && point.arrives && point.rewind.is_none();
+    cuts.then_some(point)
+}
+
 impl BlockStage<'_> {
     /// Takes elements in order, the rapids between cuts as low as bodies leave them.
     pub(super) fn take_low(
@@ -123,9 +136,7 @@ impl BlockStage<'_> {
                 self.rapids.held.push(point.clone());
                 continue;
             }
-            let cut = point.filter(|point| {
-                point.motion.pace != MoveFeed::Rapid && point.arrives && point.rewind.is_none()
-            });
+            let cut = end_of_cut(element);
             let WaitingRapids { from, held } = std::mem::take(&mut self.rapids);
             let shortened = match (&from, cut) {
                 (Some(from), Some(_)) if held.len() >= LEAST_HELD => {

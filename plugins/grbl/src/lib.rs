@@ -48,6 +48,7 @@ impl Control for Grbl {
         units_inside: true,
         spindle: ["M3", "M4", "M5", ""],
         probe: "G38.2",
+        interpolates: false,
         words: &[words::RETURNS, OWN],
         ..Table::ISO
     };

@@ -95,8 +95,10 @@ impl Engine {
     /// What table and options give it words for.
     pub(crate) fn capabilities(&self) -> Capabilities {
         let table = self.table;
-        let mut writes =
-            Capabilities::OPERATION | Capabilities::INSTEAD | Capabilities::WORD_LETTER;
+        let mut writes = Capabilities::OPERATION | Capabilities::INSTEAD;
+        if table.interpolates {
+            writes |= Capabilities::WORD_LETTER;
+        }
         if !table.codes.arc[0].is_empty() {
             writes |= Capabilities::ARC_XY
                 | Capabilities::ARC_ZX

@@ -113,6 +113,8 @@ pub struct Table {
     pub coolant: [&'static str; 5],
     /// Ends the program.
     pub end: &'static str,
+    /// It has coordinates of its own on faces or mantles (polar or cylinder interpolation), which a machine file may name.
+    pub interpolates: bool,
     /// Words of the control that programs of others hold, or that mean something else than the engine would say, in
     /// groups: [`crate::words`] has those that several controls share. A program is read back by them.
     pub words: &'static [&'static [(&'static str, Meaning)]],
@@ -498,6 +500,7 @@ impl Table {
         spindle: ["M3", "M4", "M5", "M19"],
         coolant: ["M9", "M8", "M7", "", ""],
         end: "M30",
+        interpolates: true,
         words: &[],
     };
 }

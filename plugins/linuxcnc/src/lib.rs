@@ -62,6 +62,8 @@ impl Control for LinuxCnc {
         probe: "G38.2",
         subprogram: Subprogram { number: "O{} CALL", name: "O<{}> CALL", times: "" },
         end: "M2",
+        // G12.1 chooses kinematics.
+        interpolates: false,
         words: &[words::RETURNS, words::SHIFTS, words::SUBPROGRAM_END, OWN],
         ..Table::ISO
     };

@@ -132,6 +132,8 @@ const OWN: &[(&str, Meaning)] = &[
     ("G51", Meaning::Scale),
     ("G50", Meaning::ScaleOff),
     ("G62", Meaning::Mirror),
+    ("G136", Meaning::FaceTransformationOff),
+    ("G137", Meaning::FaceTransformation),
     ("G175", Meaning::CylinderTransformation),
     ("G131", Meaning::Smoothing),
     ("G187", Meaning::Smoothing),

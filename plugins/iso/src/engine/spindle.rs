@@ -29,6 +29,10 @@ impl Engine {
         self.turning = on.then_some(spindle);
         self.tapped = false;
         let fixed = self.settings.end_surface_speed(self.table);
+        if let Some(fixed) = fixed {
+            // The next speed is one in revolutions, whatever stands between.
+            self.motion.block.word(fixed);
+        }
         match spindle {
             Spindle::Off => self.line(off, out),
             Spindle::Orient if orient.is_empty() => {
@@ -37,9 +41,6 @@ impl Engine {
             Spindle::Orient => self.line(orient, out),
             Spindle::On { rpm, sense } => {
                 let block = &mut self.motion.block;
-                if let Some(fixed) = fixed {
-                    block.word(fixed);
-                }
                 block.number("S", rpm, 0, NumberStyle::default());
                 block.word(match sense {
                     SpindleSense::Clockwise => clockwise,

@@ -109,7 +109,7 @@ fn posted_step(line: u64, step: ProgramStep, beats: &mut Vec<Beat>) {
         rapid: motion.pace == MoveFeed::Rapid,
         feed: match motion.pace {
             MoveFeed::PerMinute(feed) => Some(feed),
-            MoveFeed::Rapid | MoveFeed::InverseTime(_) => None,
+            MoveFeed::Rapid | MoveFeed::InverseTime(_) | MoveFeed::PerRevolution(_) => None,
         },
         tip: motion.tip,
         axis: motion.axis,

@@ -50,7 +50,9 @@ pub const LIBRARY: &[Row] = &[
     row("irb4600-rail", "cls", 100.0, "out-of-reach"),
     row("kr6-pose", "cls", 60.0, "over-travel"),
     row("kr6-r700", "cls", 60.0, "out-of-reach"),
+    row("lathe-xz", "cls", 40.0, "out-of-reach"),
     row("lathe-xzc-face", "cls", 60.0, "out-of-reach"),
+    row("lathe-xzc-mantle", "cls", 60.0, "out-of-reach"),
     row("lathe-xzc-polar", "cls", 60.0, "out-of-reach"),
     row("lathe-xzc-radial", "cls", 60.0, "out-of-reach"),
     row("linear-delta", "cls", 40.0, "over-travel"),
@@ -158,7 +160,8 @@ fn read_back(row: &Row, points: &[Point], program: &str) -> Vec<String> {
         .flatten()
         .filter_map(|head| Some(table["head"][head.as_str()].get("word")?.as_str()?.to_owned()))
         .collect();
-    let polar = table.get("mode").is_some().then(|| unrolled(program, "C", 1.0));
+    let polar = table.get("mode").is_some_and(|mode| mode.get("face").is_some());
+    let polar = polar.then(|| unrolled(program, "C", 1.0));
     let blocks = blocks(polar.as_deref().unwrap_or(program), &names, &swap);
     let mut faults = Vec::new();
     let poses: Vec<_> =

@@ -85,12 +85,14 @@ mod summary;
 mod terminal;
 mod threads;
 mod tools;
+mod turning;
 mod unsaid;
 mod verbs;
 mod verified;
 mod vocabularies;
 mod ways_across;
 mod words;
+mod wrap;
 mod writable;
 mod wrong_programs;
 

@@ -57,7 +57,7 @@ impl PostedBlock {
         match self.block.pace {
             MoveFeed::PerMinute(feed) => Some(feed),
             MoveFeed::InverseTime(rate) => Some(self.block.way * rate),
-            MoveFeed::Rapid => None,
+            MoveFeed::Rapid | MoveFeed::PerRevolution(_) => None,
         }
     }
 }

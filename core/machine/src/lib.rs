@@ -27,6 +27,7 @@ pub mod servo;
 pub mod tilted_plane;
 pub mod wait_rule;
 pub mod word_map;
+pub mod wrap_mode;
 
 /// What tests look into; no part of the crate's face.
 #[doc(hidden)]

@@ -33,6 +33,8 @@ pub struct FaceRange {
     pub last: u64,
     /// How near its ways, rapids among them, come to the line of the turning axis, mm.
     pub nearest: f64,
+    /// Its cuts are on the mantle.
+    pub mantle: bool,
 }
 
 /// A step of the program after which what follows is another part of the file.
@@ -48,8 +50,11 @@ fn parts(step: &ProgramStep) -> bool {
 /// Finds such lines.
 #[derive(Debug)]
 pub struct FaceFinder {
-    /// Directions of the linear axis that leads to the line, and of the coordinate across it, part frame.
-    plane: [Vector3<f64>; 2],
+    /// Directions of the linear axis that leads to the line, and of the coordinate across it, part frame; none where the
+    /// control has no mode for faces.
+    plane: Option<[Vector3<f64>; 2]>,
+    /// The control has a mode for mantles.
+    mantles: bool,
     /// The tool axis, part frame.
     axis: Vector3<f64>,
     /// Where the tool stands, mm; none before the first point.
@@ -58,22 +63,30 @@ pub struct FaceFinder {
     /// A cut of this part of the file turns the part; the tool axis leans somewhere.
     turns: bool,
     leans: bool,
+    /// A cut turns the tool axis, and the axis before it.
+    swings: bool,
+    before: Option<Vector3<f64>>,
     found: Vec<FaceRange>,
 }
 
 impl FaceFinder {
     /// For a machine whose control has the mode.
     pub fn new(machine: &Machine) -> Option<Self> {
-        let (_, face) = machine.in_face()?;
-        let mode = face.face.as_ref()?;
-        let direction = |place: usize| face.axes[place].joint.direction;
-        Some(Self {
-            plane: [direction(mode.across), direction(mode.turning)],
+        let plane = machine.in_face().and_then(|(_, face)| {
+            let mode = face.face.as_ref()?;
+            let direction = |place: usize| face.axes[place].joint.direction;
+            Some([direction(mode.across), direction(mode.turning)])
+        });
+        machine.has_modes().then(|| Self {
+            plane,
+            mantles: machine.in_wrap().is_some(),
             axis: machine.tool_axis,
             at: None,
             present: None,
             turns: false,
             leans: false,
+            swings: false,
+            before: None,
             found: Vec::new(),
         })
     }
@@ -107,13 +120,15 @@ impl FaceFinder {
     fn motion(&mut self, line: u64, tip: Vector3<f64>, axis: Vector3<f64>, cuts: bool) {
         let from = self.at.replace(tip);
         self.leans |= (axis - self.axis).norm() > SAME;
-        let range = FaceRange { first: line, last: line, nearest: f64::INFINITY };
+        let before = self.before.replace(axis);
+        self.swings |= cuts && before.is_some_and(|before| (axis - before).norm() > SAME);
+        let range = FaceRange { first: line, last: line, nearest: f64::INFINITY, mantle: false };
         let present = self.present.get_or_insert(range);
         present.last = line;
-        let Some(from) = from else {
+        let (Some(from), Some(plane)) = (from, self.plane) else {
             return;
         };
-        let [from, to] = [from, tip].map(|tip| self.plane.map(|way| way.dot(&tip)));
+        let [from, to] = [from, tip].map(|tip| plane.map(|way| way.dot(&tip)));
         let way = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let moment = libm::fabs(from[0] * to[1] - from[1] * to[0]);
         self.turns |= cuts && moment > THROUGH * way;
@@ -122,13 +137,15 @@ impl FaceFinder {
 
     fn part_ends(&mut self) {
         let (turns, leans) = (std::mem::take(&mut self.turns), std::mem::take(&mut self.leans));
-        self.at = None;
+        let mantle = std::mem::take(&mut self.swings) && self.mantles;
+        (self.at, self.before) = (None, None);
+        let face = self.plane.is_some() && turns && !leans;
         if let Some(range) = self.present.take()
-            && turns
-            && !leans
+            && (face || mantle)
             && self.found.len() < MOST_STRETCHES
         {
-            self.found.push(range);
+            let nearest = if mantle { f64::INFINITY } else { range.nearest };
+            self.found.push(FaceRange { mantle, nearest, ..range });
         }
     }
 
@@ -152,7 +169,8 @@ pub(crate) enum FaceChange {
 pub(crate) struct FaceTracker {
     ahead: Arc<FilePreview>,
     next: usize,
-    name: String,
+    /// Names of the machine on faces and on mantles.
+    names: [String; 2],
     pole: f64,
     on: bool,
 }
@@ -160,9 +178,11 @@ pub(crate) struct FaceTracker {
 impl FaceTracker {
     /// For a machine whose control has the mode.
     pub(crate) fn new(machine: &Machine, ahead: Arc<FilePreview>) -> Option<Self> {
-        let (name, face) = machine.in_face()?;
-        let pole = face.face.as_ref()?.pole;
-        Some(Self { ahead, next: 0, name: name.to_owned(), pole, on: false })
+        let face = machine.in_face();
+        let pole = face.and_then(|(_, face)| face.face.as_ref()).map_or(0.0, |mode| mode.pole);
+        let names = [face, machine.in_wrap()];
+        let names = names.map(|mode| mode.map_or(String::new(), |(name, _)| name.to_owned()));
+        machine.has_modes().then(|| Self { ahead, next: 0, names, pole, on: false })
     }
 
     /// The mode is on.
@@ -194,7 +214,8 @@ impl FaceTracker {
             return Some(FaceChange::Without(self.too_near(range)));
         }
         self.on = true;
-        Some(FaceChange::Machine(self.name.clone()))
+        let name = &self.names[usize::from(range.mantle)];
+        Some(FaceChange::Machine(name.clone()))
     }
 
     /// The mode ends, if it is on.

@@ -195,7 +195,7 @@ impl<'a> Post<'a> {
         model: &'a mut dyn ModelSession,
         output: &'a mut dyn TextSink,
     ) -> Result<Self, Box<Diagnostic>> {
-        job.reading = job.reading.on(machine);
+        job.reading = ReadingOptions { plans: job.plans, ..job.reading.on(machine) };
         let format = dialect.format().clone();
         let fault = refusal::too_fine(machine, &format)
             .or_else(|| refusal::depth_counts_down(machine))

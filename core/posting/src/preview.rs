@@ -48,7 +48,7 @@ pub fn wants_planes(machine: &Machine, writes: Capabilities) -> bool {
 
 /// A first pass is to be made: for planes, or for a mode of the control.
 pub fn is_wanted(machine: &Machine, writes: Capabilities) -> bool {
-    wants_planes(machine, writes) || machine.in_face().is_some()
+    wants_planes(machine, writes) || machine.has_modes()
 }
 
 /// The first pass.

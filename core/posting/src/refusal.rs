@@ -413,14 +413,14 @@ pub(crate) fn no_instead(machine: &Machine, writes: Capabilities) -> Option<Diag
 
 /// The machine file has a mode of the control in which a word is another coordinate, and the dialect cannot write that.
 pub(crate) fn no_word_letter(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
-    let lacks = machine.in_face().is_some() && !writes.has(Capabilities::WORD_LETTER);
+    let lacks = machine.has_modes() && !writes.has(Capabilities::WORD_LETTER);
     lacks.then(|| {
         let message = format!(
-            "[mode.face] of {}: the dialect {} has no polar interpolation",
+            "[mode] of {}: the dialect {} has no polar interpolation, and none on a cylinder",
             machine.name, machine.control.dialect
         );
         Diagnostic::error("dialect", message)
-            .help("leave [mode.face] out: faces are written in words of the axes then")
+            .help("leave [mode] out: faces and mantles are written in words of the axes then")
     })
 }
 

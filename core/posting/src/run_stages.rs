@@ -53,7 +53,7 @@ fn plain_feed(step: &ProgramStep) -> Option<(f64, &StraightMove)> {
         ProgramStep::Move(motion) if motion.chord == 0.0 && motion.edge == Vector3::zeros() => {
             match motion.pace {
                 MoveFeed::PerMinute(feed) => Some((feed, motion)),
-                MoveFeed::Rapid | MoveFeed::InverseTime(_) => None,
+                MoveFeed::Rapid | MoveFeed::InverseTime(_) | MoveFeed::PerRevolution(_) => None,
             }
         }
         _ => None,

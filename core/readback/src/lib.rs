@@ -43,6 +43,7 @@ use std::sync::Arc;
 use post_machine::face_mode::FaceMode;
 use post_machine::kinematics::Solver;
 use post_machine::tilted_plane::TiltedPlane;
+use post_machine::wrap_mode::WrapMode;
 
 /// What tests of single files reach; no part of the face.
 #[doc(hidden)]
@@ -92,6 +93,8 @@ pub struct MachineState {
     pub plane: Option<TiltedPlane>,
     /// The polar interpolation in force: the tip goes straight, and the axes in polar coordinates.
     pub face: Option<Arc<FaceMode>>,
+    /// The cylinder interpolation in force.
+    pub wrap: Option<Arc<WrapMode>>,
     /// Name of the work offset in force: `G54`.
     pub work_offset: Option<String>,
     /// The spindle.

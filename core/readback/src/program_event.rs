@@ -1,5 +1,8 @@
 //! What a program or a CL file asks for besides motion, in the same words for both, so that they can be compared.
 
+use nalgebra::Vector3;
+use post_machine::description::surface_rpm;
+
 /// What a block asks for that is no motion: tool, spindle, coolant, wait, stop, remark, offset.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ProgramEvent {
@@ -88,6 +91,16 @@ impl SpindleState {
             Self::Clockwise(rpm) | Self::CounterClockwise(rpm) => Some(rpm),
             _ => None,
         }
+    }
+
+    /// Revolutions a minute by which a way between two tips (mm, part frame) takes as long as at its cutting speed; none
+    /// where it keeps none. The part turns about its Z.
+    pub fn surface_rpm(self, [from, to]: [Vector3<f64>; 2]) -> Option<f64> {
+        let Self::Surface { speed, most, .. } = self else {
+            return None;
+        };
+        let radius = from.xy().norm().midpoint(to.xy().norm());
+        Some(surface_rpm(speed, radius, most.unwrap_or(f64::INFINITY)))
     }
 }
 

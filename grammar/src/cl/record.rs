@@ -90,6 +90,8 @@ pub enum Statement {
     Multax(bool),
     /// `MODE/MILL`: the tool turns.
     Milling,
+    /// `MODE/TURN`: the part turns.
+    Turning,
     /// `MCS/`: the frame of an operation (CAMplete).
     Mcs {
         /// Directions of X, Y and Z.
@@ -210,7 +212,7 @@ impl Statement {
             Self::Cutter(_) => "CUTTER",
             Self::Units(_) => "UNITS",
             Self::Multax(_) => "MULTAX",
-            Self::Milling => "MODE",
+            Self::Milling | Self::Turning => "MODE",
             Self::Mcs { .. } => "MCS",
             Self::Msys { .. } => "MSYS",
             Self::Csys(_) => "CSYS",

@@ -9,8 +9,9 @@ use std::path::PathBuf;
 use clap::Args;
 use post_machine::check::{Differing, compare};
 use post_machine::description::{Machine, Setting};
-use post_machine::diagnostic::{Diagnostic, Severity};
+use post_machine::diagnostic::{Diagnostic, Severity, Short};
 use post_machine::face_mode::FaceMode;
+use post_machine::wrap_mode::WrapMode;
 
 use post_cli::arguments::flag_values;
 use post_cli::arguments::flag_values::file;
@@ -163,6 +164,9 @@ fn alone(session: &Session, arguments: &CheckArguments, machine: &Machine) -> Re
     if let Some(mode) = machine.in_face().and_then(|(_, face)| face.face.as_ref()) {
         print(session, &polar(machine, mode));
     }
+    if let Some(mode) = machine.in_wrap().and_then(|(_, wrap)| wrap.wrap.as_ref()) {
+        print(session, &mantle(machine, mode));
+    }
     let heads: Vec<&str> = machine.named_heads().map(|head| head.name.as_str()).collect();
     if !heads.is_empty() {
         print(session, &format!("further heads, see --head: {}\n", heads.join(", ")));
@@ -180,6 +184,22 @@ fn polar(machine: &Machine, mode: &FaceMode) -> String {
         mode.off.join(", "),
         mode.letter,
         mode.pole
+    )
+}
+
+/// What is written in cylinder interpolation of the control.
+fn mantle(machine: &Machine, mode: &WrapMode) -> String {
+    let of = match mode.lengths {
+        true => "a length along the cylinder",
+        false => "an angle",
+    };
+    format!(
+        "mantle           {} to {}: {} is {of} of radius {} mm, {} at zero where it begins\n",
+        mode.on.join(", "),
+        mode.off.join(", "),
+        mode.letter,
+        Short(mode.radius),
+        machine.axes[mode.turning].name
     )
 }
 

@@ -123,7 +123,7 @@ impl PostArguments {
             || making.plan
             || self.looks_ahead(machine)
             || machine.wants_planes(true)
-            || machine.in_face().is_some()
+            || machine.has_modes()
             || self.outputs.0.verify
             || self.outputs.0.clearance
             || self.report.0.report.is_some()

@@ -40,6 +40,8 @@ pub struct Axis {
     pub step: Option<f64>,
     /// A quill: how its way is divided is the command's affair.
     quill: bool,
+    /// What its word multiplies it by: 2 of a diameter.
+    factor: f64,
 }
 
 /// A machine file with one of its heads.
@@ -157,6 +159,7 @@ impl Model {
                     positions: get("positions").map(|list| numbers.list(list)),
                     step: get("step").map(|step| numbers.number(step)),
                     quill: get("share").is_some() || flag("reserve"),
+                    factor: factor(&table, name),
                 }
             })
             .collect();
@@ -245,7 +248,7 @@ impl Model {
         let offset = self.work_offset(length);
         let value = |((axis, word), offset): ((&Axis, &f64), f64)| match axis.rotary {
             true => *word,
-            false => word * self.unit + offset + axis.zero,
+            false => word * self.unit / axis.factor + offset + axis.zero,
         };
         self.axes.iter().zip(words).zip(offset).map(value).collect()
     }
@@ -291,6 +294,13 @@ pub struct Block {
     pub swaps: usize,
 }
 
+/// The multiple of `[word.NAME] is = "2 * NAME"`; one where there is none.
+fn factor(table: &Table, name: &str) -> f64 {
+    let word = table.get("word").and_then(|word| word.get(name)?.get("is")?.as_str());
+    let own = word.and_then(|is| is.strip_suffix(name)?.trim().strip_suffix('*'));
+    own.map_or(1.0, |number| number.trim().parse().unwrap())
+}
+
 /// The motion blocks of a program, ISO or conversational, once all axes have been programmed. `swap` are words
 /// that swap heads.
 pub fn blocks(program: &str, names: &[&str], swap: &[String]) -> Vec<Block> {
@@ -305,7 +315,7 @@ pub fn blocks(program: &str, names: &[&str], swap: &[String]) -> Vec<Block> {
         let words = || code.split_whitespace();
         swaps += words().filter(|word| swap.iter().any(|swap| swap == word)).count();
         // Retracts are in machine coordinates or steps; cycles and tools have words of their own.
-        let other = ["G28", "G53", "M91", "M140", "CYCL", "TOOL", "BLK"];
+        let other = ["G28", "G53", "M91", "M140", "CYCL", "TOOL", "BLK", "G4", "G7.1"];
         if words().any(|word| other.contains(&word)) {
             continue;
         }

@@ -97,7 +97,7 @@ fn with_heads(
         return read(table, sources, faults, evaluated);
     }
     let mut machine = read(table.clone(), sources, faults, evaluated)?;
-    if machine.in_face().is_some() {
+    if machine.has_modes() {
         let place = heads.into_iter().next().and_then(|head| head.place);
         let message = "a machine with a mode of its control has no other heads".to_owned();
         let finding = Diagnostic::error("machine-head", message).at(place);
@@ -397,6 +397,7 @@ impl Builder<'_> {
             frame: Frame::default(),
             heads: Vec::new(),
             face: None,
+            wrap: None,
             unused_options,
             solids,
             fixtures,
@@ -413,8 +414,8 @@ impl Builder<'_> {
             self.check_errors(&machine, file.error.keys().next().map_or(0..0, Spanned::span));
         }
         if self.faults.is_empty() {
-            let mode = self.modes(&file.mode, &machine);
-            machine.heads.extend(mode);
+            let modes = [self.face(&file.mode, &machine), self.wrap(&file.mode, &machine)];
+            machine.heads.extend(modes.into_iter().flatten());
         }
         Some(machine)
     }

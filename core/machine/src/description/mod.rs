@@ -75,7 +75,7 @@ pub use schema::schema;
 pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
 pub use solids::Solid;
-pub use spindle::SpindleSpeeds;
+pub use spindle::{SpindleSpeeds, surface_rpm};
 pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 
 use crate::along_word::AlongWord;
@@ -88,9 +88,13 @@ use crate::kinematics::{
 use crate::servo::Servo;
 use crate::wait_rule::WaitRule;
 use crate::word_map::WordMap;
+use crate::wrap_mode::WrapMode;
 
 /// Name of the head that a machine has in polar interpolation by the control: no CL file can say it.
 const FACE_MODE: &str = "mode face";
+
+/// Likewise in cylinder interpolation.
+const WRAP_MODE: &str = "mode wrap";
 
 /// The linear axes whose words can be those of a tip.
 pub(crate) const TIP_WORDS: [&str; 3] = ["X", "Y", "Z"];
@@ -177,6 +181,8 @@ pub struct Machine {
     pub heads: Vec<Head>,
     /// The control interpolates in polar coordinates, and the axes are those of the face; none on the machine itself.
     pub face: Option<FaceMode>,
+    /// The control interpolates on a cylinder; none on the machine itself.
+    pub wrap: Option<WrapMode>,
     /// Options for plugins that it does not use.
     pub unused_options: Vec<UnusedOptions>,
     /// Shapes of its bodies, for pictures and for what hits what.
@@ -618,7 +624,7 @@ impl Machine {
     /// The machine with the head of that name, or in the mode of that name; with an empty name, by which a mode ends, the
     /// machine itself.
     pub fn changed_to(&self, name: &str) -> Option<&Machine> {
-        match name.is_empty() && self.in_face().is_some() {
+        match name.is_empty() && self.has_modes() {
             true => Some(self),
             false => self.head(name).map(|head| &head.machine),
         }
@@ -630,9 +636,25 @@ impl Machine {
         Some((&face.name, &face.machine))
     }
 
+    /// Name of the head, and the machine, while its control interpolates on a cylinder; none where it does not.
+    pub fn in_wrap(&self) -> Option<(&str, &Machine)> {
+        let wrap = self.heads.iter().find(|head| head.machine.wrap.is_some())?;
+        Some((&wrap.name, &wrap.machine))
+    }
+
+    /// The control has coordinates of its own for some operations.
+    pub fn has_modes(&self) -> bool {
+        self.heads.iter().any(|head| head.machine.is_in_mode())
+    }
+
+    /// It is a machine in such coordinates.
+    pub fn is_in_mode(&self) -> bool {
+        self.face.is_some() || self.wrap.is_some()
+    }
+
     /// Heads that the CL file can name.
     pub fn named_heads(&self) -> impl Iterator<Item = &Head> {
-        self.heads.iter().filter(|head| head.machine.face.is_none())
+        self.heads.iter().filter(|head| !head.machine.is_in_mode())
     }
 
     /// The axis of that name, and the machine that has it: this one, or with one of its heads.

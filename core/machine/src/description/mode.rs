@@ -7,14 +7,16 @@ use post_grammar::text::is_unprintable;
 
 use super::bounds::Bounds;
 use super::build::Builder;
-use super::file::{FeedMode, OneOrMoreLines};
+use super::file::{FeedLength, FeedMode, OneOrMoreLines, OutputUnits};
 use super::quantity::KeyedNumber;
 use super::table::{Spanned, keys};
-use super::{Axis, FACE_MODE, Head, Machine, Tcp};
+use super::{Axis, FACE_MODE, Head, Machine, Tcp, WRAP_MODE};
+use crate::axis_words::unit_length;
 use crate::diagnostic::Short;
 use crate::face_mode::FaceMode;
 use crate::kinematics::{Joint, Joints, MAX_AXES};
 use crate::word_map::WordMap;
+use crate::wrap_mode::WrapMode;
 
 /// Least distance of the tip from the line of the turning axis, if the file does not say, mm.
 const POLE: f64 = 1.0;
@@ -37,6 +39,9 @@ keys! {
         /// the words are right-angled coordinates. For a turning axis that carries the part, a linear axis along it and
         /// one that leads towards its line, the tool along it. Operations that turn the part in cuts are written so.
         face: Option<Spanned<FaceFile>>,
+        /// Cylinder interpolation (G7.1, TRACYL): the word of the turning axis and the feed are those of a mantle. For one
+        /// turning axis that carries the part. Operations that turn the tool axis about it in cuts are written so.
+        wrap: Option<Spanned<WrapFile>>,
     }
 }
 
@@ -58,6 +63,24 @@ keys! {
     }
 }
 
+keys! {
+    /// Cylinder interpolation by the control.
+    WrapFile {
+        /// The line of the program that begins it, or the lines: `"G7.1 C{r}"`, `"TRACYL({d})"`. Between braces r is the
+        /// radius and d the diameter, units of the program. The turning axis stands at zero then.
+        on: Spanned<OneOrMoreLines>,
+        /// The line that ends it, or the lines: `"G7.1 C0"`, `"TRAFOOF"`.
+        off: Spanned<OneOrMoreLines>,
+        /// Radius of the cylinder, mm: where the feed of the CL file holds as the control counts it. That of the part for one
+        /// job: `--set mode.wrap.radius=40`.
+        radius: KeyedNumber = NEAREST,
+        /// The letter of the word along the circumference: that of the turning axis if not said (C on Fanuc), "Y" for TRACYL.
+        letter: Option<Spanned<String>> = Bounds::pattern("^[A-CU-Z]$"),
+        /// That word is a length along the cylinder (TRACYL), not an angle.
+        lengths: bool = Bounds::OFF,
+    }
+}
+
 /// What a mode lacks, and what would help.
 struct Lack(String, &'static str);
 
@@ -74,8 +97,8 @@ const CHAIN: &str = "[mode.face] is for a turning axis that carries the part, a 
                      its line: chain = \"[w C' b Z X (S) t]\"";
 
 impl Builder<'_> {
-    /// The machine in the modes of `file`, to be put among its heads.
-    pub(super) fn modes(&mut self, file: &ModeFile, machine: &Machine) -> Option<Head> {
+    /// The machine in polar interpolation, to be put among its heads.
+    pub(super) fn face(&mut self, file: &ModeFile, machine: &Machine) -> Option<Head> {
         let face = file.face.as_ref()?;
         let span = face.span();
         let said = face.get_ref();
@@ -86,7 +109,7 @@ impl Builder<'_> {
             let centre = centre(machine, axes)?;
             let own = &machine.axes[axes.turning].name;
             let letter = said.letter.as_ref().map_or(own, |letter| letter.get_ref());
-            check_letter(machine, axes, letter)?;
+            check_letter(machine, [axes.across, axes.along].into_iter(), letter)?;
             let mode = FaceMode {
                 on,
                 off,
@@ -103,6 +126,42 @@ impl Builder<'_> {
         match made {
             Ok(machine) => {
                 Some(Head { name: FACE_MODE.to_owned(), word: None, offset: None, machine })
+            }
+            Err(Lack(message, help)) => {
+                self.fault("machine-mode", span, message, help);
+                None
+            }
+        }
+    }
+
+    /// The machine in cylinder interpolation, to be put among its heads.
+    pub(super) fn wrap(&mut self, file: &ModeFile, machine: &Machine) -> Option<Head> {
+        let wrap = file.wrap.as_ref()?;
+        let span = wrap.span();
+        let said = wrap.get_ref();
+        let radius = self.checked(&Some(said.radius.clone()))?;
+        let filled = |lines: Vec<String>| {
+            let radius = radius / unit_length(machine.control.units);
+            let fill = |line: String| {
+                let line = line.replace("{r}", &Short(radius).to_string());
+                line.replace("{d}", &Short(2.0 * radius).to_string())
+            };
+            lines.into_iter().map(fill).collect::<Vec<_>>()
+        };
+        let on = filled(self.lines(&said.on)?);
+        let off = filled(self.lines(&said.off)?);
+        let made = turning_axis(machine, said.lengths).and_then(|turning| {
+            let own = &machine.axes[turning].name;
+            let letter = said.letter.as_ref().map_or(own, |letter| letter.get_ref());
+            let others = (0..machine.axes.len()).filter(|place| *place != turning);
+            check_letter(machine, others, letter)?;
+            let letter = letter.clone();
+            let mode = WrapMode { on, off, letter, lengths: said.lengths, radius, turning };
+            Ok(on_mantle(machine, mode))
+        });
+        match made {
+            Ok(machine) => {
+                Some(Head { name: WRAP_MODE.to_owned(), word: None, offset: None, machine })
             }
             Err(Lack(message, help)) => {
                 self.fault("machine-mode", span, message, help);
@@ -140,8 +199,35 @@ fn face_axes(machine: &Machine) -> Result<FaceAxes, Lack> {
     if machine.axes.len() != 3 || !machine.axes.iter().all(free) || !upright {
         return Err(wrong());
     }
+    check_plain(machine, turning)?;
+    Ok(FaceAxes { turning, across, along })
+}
+
+/// The one axis that turns the part, of a machine whose control can interpolate on a mantle.
+fn turning_axis(machine: &Machine, lengths: bool) -> Result<usize, Lack> {
+    let mut rotary = (0..machine.axes.len()).filter(|place| machine.axes[*place].joint.rotary);
+    let turning = rotary.next().filter(|place| machine.axes[*place].carries_part);
+    let free = |axis: &Axis| axis.indexed.is_none();
+    let (Some(turning), None, true) = (turning, rotary.next(), machine.axes.iter().all(free))
+    else {
+        let message = "the machine has other axes than a mantle is milled with".to_owned();
+        return Err(Lack(
+            message,
+            "[mode.wrap] is for one rotary axis, which carries the part: chain = \"[w C' b Z X (S) t]\"",
+        ));
+    };
+    check_plain(machine, turning)?;
+    if lengths && machine.control.units == OutputUnits::Inch {
+        let message = "lengths along a cylinder are written in mm alone".to_owned();
+        return Err(Lack(message, "units = \"mm\", or a word that is an angle"));
+    }
+    Ok(turning)
+}
+
+/// What the modes ask of a machine whose axis at `turning` carries the part.
+fn check_plain(machine: &Machine, turning: usize) -> Result<(), Lack> {
     let own = |lack: &str, help| Err(Lack(lack.to_owned(), help));
-    let axes = FaceAxes { turning, across, along };
+    let place = turning;
     let turning = &machine.axes[turning];
     if machine.control.tcp != Tcp::Post || machine.edge.is_some() {
         return own("the mode is the control's, and so is what keeps the tip", "tcp = \"post\"");
@@ -158,7 +244,7 @@ fn face_axes(machine: &Machine) -> Result<FaceAxes, Lack> {
             "leave one of them out",
         );
     }
-    let coupled = |map: &WordMap| map.couples() || map.factor(axes.turning) != 1.0;
+    let coupled = |map: &WordMap| map.couples() || map.factor(place) != 1.0;
     if machine.word_map.as_ref().is_some_and(coupled) {
         return own("the turning axis has a word of its own", "leave [word.C] out");
     }
@@ -166,7 +252,28 @@ fn face_axes(machine: &Machine) -> Result<FaceAxes, Lack> {
         let message = format!("{} has no max_feed: there are no rapids in the mode", axis.name);
         return Err(Lack(message, "give every axis its max_feed"));
     }
-    Ok(axes)
+    Ok(())
+}
+
+/// The machine as its control takes words and feeds on the mantle.
+fn on_mantle(machine: &Machine, mode: WrapMode) -> Machine {
+    let mut wrap = machine.clone();
+    let turning = &mut wrap.axes[mode.turning];
+    turning.feed_diameter = Some(2.0 * mode.radius);
+    turning.clamp = None;
+    if mode.lengths {
+        let factor = |place: usize| machine.word_map.as_ref().map_or(1.0, |map| map.factor(place));
+        let mut factors: Joints = std::array::from_fn(factor);
+        factors[mode.turning] = 1f64.to_radians() * mode.radius;
+        wrap.word_map = WordMap::multiples(factors);
+    }
+    wrap.clamps = false;
+    wrap.control.feed = FeedMode::PerMinute;
+    wrap.control.feed_length = Some(FeedLength::Combined);
+    wrap.frame.change.clear();
+    wrap.frame.park.clear();
+    wrap.wrap = Some(mode);
+    wrap
 }
 
 /// Value of the axis that leads to the line of the turning axis with the tip on it, mm.
@@ -205,9 +312,13 @@ fn centre(machine: &Machine, axes: FaceAxes) -> Result<f64, Lack> {
 }
 
 /// The letter of the coordinate is that of no other axis.
-fn check_letter(machine: &Machine, axes: FaceAxes, letter: &str) -> Result<(), Lack> {
+fn check_letter(
+    machine: &Machine,
+    mut others: impl Iterator<Item = usize>,
+    letter: &str,
+) -> Result<(), Lack> {
     let taken = |axis: usize| machine.axes[axis].name == letter;
-    match [axes.across, axes.along].into_iter().any(taken) {
+    match others.any(taken) {
         true => {
             let message = format!("{letter} is the letter of another axis in the mode");
             Err(Lack(message, "letter = \"C\" or \"Y\""))

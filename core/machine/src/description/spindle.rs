@@ -1,5 +1,7 @@
 //! How fast the spindle turns: `[spindle]`.
 
+use std::f64::consts::TAU;
+
 use super::build::Builder;
 use super::file::SpindleFile;
 use crate::diagnostic::{Diagnostic, Short};
@@ -19,6 +21,11 @@ impl Default for SpindleSpeeds {
     fn default() -> Self {
         Self { min: 0.0, max: f64::INFINITY, surface_speed: false }
     }
+}
+
+/// Revolutions a minute that keep a cutting speed of `speed` m/min at `radius` mm, no more than `most`.
+pub fn surface_rpm(speed: f64, radius: f64, most: f64) -> f64 {
+    (speed * 1000.0 / (TAU * radius)).min(most)
 }
 
 /// No spindle turns as fast, rpm.

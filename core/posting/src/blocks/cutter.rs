@@ -46,6 +46,8 @@ impl BlockStage<'_> {
             "rotary axes turning".to_owned()
         } else if machine.face.is_some() {
             "the control interpolating in polar coordinates ([mode.face])".to_owned()
+        } else if machine.wrap.is_some() {
+            "the control interpolating on a cylinder ([mode.wrap])".to_owned()
         } else if !["X", "Y"].into_iter().all(|name| slides(machine, name)) {
             "a machine that has not both X and Y".to_owned()
         } else {

@@ -52,7 +52,7 @@ impl NominalTime {
             // The tip stands still: the feed is taken along the axes, degrees as millimetres, as controls do.
             MoveFeed::PerMinute(feed) => travels().combined / feed,
             MoveFeed::InverseTime(feed) => 1.0 / feed,
-            MoveFeed::Rapid => 0.0,
+            MoveFeed::Rapid | MoveFeed::PerRevolution(_) => 0.0,
         };
         Self { minutes, moves }
     }

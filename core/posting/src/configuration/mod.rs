@@ -410,7 +410,7 @@ impl<'a> ConfigurationStage<'a> {
                 };
                 self.route.leave();
                 self.machine = machine;
-                if self.base.in_face().is_some() {
+                if self.base.has_modes() {
                     self.change_mode(line);
                     self.put(StreamItem::Command { line, command }, out);
                     return;

@@ -151,7 +151,7 @@ pub(super) fn minutes(motion: &StraightMove, way: f64) -> f64 {
     match motion.pace {
         MoveFeed::PerMinute(feed) => way / feed,
         MoveFeed::InverseTime(feed) => 1.0 / feed,
-        MoveFeed::Rapid => 0.0,
+        MoveFeed::Rapid | MoveFeed::PerRevolution(_) => 0.0,
     }
 }
 

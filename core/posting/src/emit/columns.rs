@@ -22,7 +22,7 @@ impl EmitStage<'_> {
             && self.spindle.waits.is_none()
             && self.compensation.waits.is_none()
             && self.machine.limits.is_empty()
-            && self.machine.face.is_none()
+            && !self.machine.is_in_mode()
             && !self.words.is_coupled()
             && !self.clamps()
             && !self.writer.notes_places()

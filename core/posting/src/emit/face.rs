@@ -6,6 +6,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::face_mode::FaceMode;
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::travel::{AT_END, OverTravel, passed};
+use post_machine::wrap_mode::WrapMode;
 use post_plugin::{Event, Feed};
 
 use super::EmitStage;
@@ -14,8 +15,8 @@ use crate::accuracy::PlacementError;
 use crate::blocks::{BlockReason, MotionBlock};
 use crate::refusal;
 
-/// The tool goes round to its first place so far below the retract, mm.
-const BELOW: f64 = 1.0;
+/// The tool goes round to its first place so far below the retract, mm: rounded words do not pass it.
+const BELOW: f64 = 0.01;
 
 /// Words of a block by what they mean on the face: places among them.
 struct FaceWords {
@@ -48,6 +49,10 @@ impl<'a> EmitStage<'a> {
 
     /// The mode ends, ahead of a retract, if it is in force: the axes are themselves again.
     pub(super) fn end_face(&mut self, line: u64) {
+        if let Some(mode) = self.machine.wrap.as_ref().filter(|_| self.face.on) {
+            self.face.on = false;
+            return self.end_wrap(line, mode);
+        }
         let Some(mode) = self.machine.face.as_ref().filter(|_| self.face.on) else {
             return;
         };
@@ -126,6 +131,69 @@ impl<'a> EmitStage<'a> {
         }
         if block.reason != BlockReason::Above {
             self.begin_compensation(line);
+        }
+    }
+
+    /// The first position of an operation on the mantle: the part is turned to zero, the tool comes over the place far from
+    /// it, the mode begins, and the part turns before the tool goes down.
+    pub(super) fn position_on_mantle(&mut self, block: &MotionBlock, mode: &'a WrapMode) {
+        let line = block.line;
+        let order = axis_words::order(self.base);
+        let place = |joint: usize| order.iter().position(|other| *other == joint);
+        let along = axis_words::depth(self.base);
+        let (Some(turning), Some(along)) = (place(mode.turning), along) else {
+            return;
+        };
+        let Some(depth) = place(along) else {
+            return;
+        };
+        if let Some(clamp) = self.base.axes[mode.turning].clamp.as_ref() {
+            self.writer.push(line, Event::Word { text: &clamp.off });
+            self.clamps.on &= !(1 << mode.turning);
+        }
+        let count = self.writer.words();
+        let mut words: WordValues = block.words;
+        words[turning] = 0.0;
+        words[depth] = self.height(block, depth);
+        self.writer.push(line, Event::Turn { words: &words[..count] });
+        self.smooth(line);
+        self.keep_tip(line, false);
+        let tool = None;
+        let position =
+            Event::Position { tool, feed: None, plane_first: true, words: &words[..count] };
+        self.writer.push(line, position);
+        self.clear = false;
+        for text in &mode.on {
+            self.writer.push(line, Event::Word { text });
+        }
+        if mode.changes_word(&self.base.axes[mode.turning].name) {
+            let letter = &mode.letter;
+            let word = turning as u32;
+            self.writer.push(line, Event::WordLetter { word, coordinate: mode.lengths, letter });
+        }
+        self.face.on = true;
+        words[turning] = block.words[turning];
+        let around = self.base.axes[mode.turning].max_feed * mode.radius;
+        self.go_at(line, around, &words[..count]);
+        match block.time.feed {
+            Some(feed) => self.linear(line, feed, &block.words[..count]),
+            None => self.go_at(line, self.base.axes[along].max_feed, &block.words[..count]),
+        }
+        if block.reason != BlockReason::Above {
+            self.begin_compensation(line);
+        }
+    }
+
+    fn end_wrap(&mut self, line: u64, mode: &'a WrapMode) {
+        for text in &mode.off {
+            self.writer.push(line, Event::Word { text });
+        }
+        let order = axis_words::order(self.base);
+        let letter = &self.base.axes[mode.turning].name;
+        let word = order.iter().position(|other| *other == mode.turning);
+        if let Some(word) = word.filter(|_| mode.changes_word(letter)) {
+            let word = word as u32;
+            self.writer.push(line, Event::WordLetter { word, coordinate: false, letter });
         }
     }
 

@@ -285,7 +285,7 @@ impl EmitStage<'_> {
 
     /// Another head: the machine is that of the head from here on.
     pub(super) fn swap_head(&mut self, line: u64, name: &str) {
-        if self.base.in_face().is_some() {
+        if self.base.has_modes() {
             if let Some(machine) = self.base.changed_to(name) {
                 self.change_mode(line, machine);
             }
@@ -380,6 +380,9 @@ impl EmitStage<'_> {
         }
         if let Some(mode) = &self.machine.face {
             return self.position_on_face(block, mode);
+        }
+        if let Some(mode) = &self.machine.wrap {
+            return self.position_on_mantle(block, mode);
         }
         let words = &block.words[..self.writer.words()];
         // Whether they are clamped is not known.

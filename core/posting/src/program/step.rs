@@ -215,6 +215,8 @@ pub enum MoveFeed {
     PerMinute(f64),
     /// The move takes 1/F minutes.
     InverseTime(f64),
+    /// Feed of the tip in a revolution of the part, mm: how long it takes follows where the blocks are.
+    PerRevolution(f64),
 }
 
 impl MoveFeed {

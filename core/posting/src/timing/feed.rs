@@ -30,6 +30,7 @@ pub(super) struct FeedWriter {
     most: f64,
     unit: f64,
     feed: DecimalFormat,
+    turn: DecimalFormat,
     /// None where the machine or the dialect has no feed by time.
     inverse: Option<DecimalFormat>,
 }
@@ -92,6 +93,7 @@ impl FeedWriter {
             most: most(machine),
             unit: unit_length(machine.control.units),
             feed: DecimalFormat::new(format.feed),
+            turn: DecimalFormat::new(format.feed_per_revolution),
             inverse: match machine.control.feed {
                 FeedMode::PerMinute => None,
                 _ => format.inverse_time.map(|decimals| {
@@ -115,6 +117,11 @@ impl FeedWriter {
         turns: &mut [bool; LANES],
     ) {
         self.kinds.turning_all(joints, count, turns);
+    }
+
+    /// A feed of `feed` mm a revolution as it is printed; none where the dialect prints none so low.
+    pub(super) fn per_revolution(&self, feed: f64) -> Option<f64> {
+        Some(self.turn.floor(feed / self.unit)).filter(|feed| *feed > 0.0)
     }
 
     /// The least feed a minute that is printed.

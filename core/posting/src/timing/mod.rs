@@ -8,12 +8,13 @@ mod columns;
 mod feed;
 pub mod limits;
 mod rapids;
+mod turning;
 
 use post_machine::along_word::AlongPrinter;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, LimitExcess};
 use post_machine::kinematics::Joints;
-use post_plugin::{Capabilities, Format, Spindle};
+use post_plugin::{Capabilities, Feed, Format, Spindle};
 
 use crate::blocks::{BlockKind, MotionBlock};
 use crate::findings::Findings;
@@ -25,6 +26,7 @@ pub(crate) use columns::TimedRun;
 use feed::{FeedWriter, WrittenFeed};
 use limits::BlockTimeLimit;
 use rapids::Rapids;
+use turning::TurningSpeed;
 
 /// The stage that gives every block its time and feed.
 #[derive(Debug)]
@@ -37,6 +39,8 @@ pub(crate) struct TimingStage<'a> {
     /// Minutes that each axis needs for one mm or radian at its largest feed.
     slowness: Joints,
     rapids: Rapids,
+    /// How fast the part turns.
+    turning: TurningSpeed,
     /// Where the axes stand.
     last: Joints,
     /// The word that goes with the way of the tip, and that way in cuts so far, mm.
@@ -102,6 +106,7 @@ impl<'a> TimingStage<'a> {
             limits: limits::of(machine),
             slowness: machine.slowness(),
             rapids: Rapids::new(machine, writes),
+            turning: TurningSpeed::default(),
             last: Joints::default(),
             along: AlongPrinter::new(machine, format),
             way: 0.0,
@@ -179,8 +184,13 @@ impl<'a> TimingStage<'a> {
     fn command(&mut self, line: u64, command: &Command) {
         match command {
             Command::Dwell(seconds) => self.statistics.other += seconds / 60.0,
-            Command::Spindle(Spindle::On { .. }) | Command::SurfaceSpeed { .. } => {
+            Command::Spindle(spindle) => {
+                self.turns_spindle |= matches!(spindle, Spindle::On { .. });
+                self.turning.turn(*spindle);
+            }
+            Command::SurfaceSpeed { speed, most, .. } => {
                 self.turns_spindle = true;
+                self.turning.keep(*speed, *most);
             }
             Command::Sync(SyncWait { mark, line: wait }) => {
                 if self.waits.len() == MOST_WAITS {
@@ -229,6 +239,7 @@ impl<'a> TimingStage<'a> {
         }
         self.last = block.joints;
         self.rapids.stand(block.tip);
+        self.turning.stand(block.tip);
     }
 
     /// A time for a way that is not known has no meaning; without a feed a minute the way is made at rapid.
@@ -241,6 +252,8 @@ impl<'a> TimingStage<'a> {
             }
             self.note_raised(block.line, &written);
             block.time.feed = Some(written.feed);
+        } else if let MoveFeed::PerRevolution(feed) = block.pace {
+            block.time.feed = self.feeds.per_revolution(feed).map(Feed::PerRevolution);
         } else if let Some(feed) = self.rapids.feed_down(block) {
             block.time.feed = Some(self.feeds.approach(feed).0.feed);
         }
@@ -260,6 +273,9 @@ impl<'a> TimingStage<'a> {
 
     #[inline]
     fn cut(&mut self, block: &mut MotionBlock) {
+        if let MoveFeed::PerRevolution(feed) = block.pace {
+            return self.turned(block, feed);
+        }
         let (least, limit, needed) = self.least(block);
         block.time.limit =
             limit.filter(|_| least > block.asked() * (1.0 + 1e-9)).map(|limit| limit.name(block));

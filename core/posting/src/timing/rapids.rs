@@ -62,7 +62,7 @@ impl Rapids {
     /// Another head is in.
     pub(super) fn set(&mut self, machine: &Machine) {
         self.slowness = machine.slowness();
-        self.none = machine.face.is_some();
+        self.none = machine.is_in_mode();
         self.down = machine
             .solver(0.0)
             .ok()

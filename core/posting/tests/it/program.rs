@@ -130,6 +130,7 @@ fn step(step: &StreamItem<PathMove>) -> String {
                 MoveFeed::Rapid => "R".to_owned(),
                 MoveFeed::PerMinute(feed) => format!("F{}", number(feed)),
                 MoveFeed::InverseTime(feed) => format!("V{}", number(feed)),
+                MoveFeed::PerRevolution(feed) => format!("R{}", number(feed)),
             };
             return format!("{pace} {}", placed(motion.tip, motion.axis));
         }

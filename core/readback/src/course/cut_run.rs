@@ -38,6 +38,7 @@ impl CutRun {
             from: self.poses[place],
             to: self.poses[place + 1],
             feed: self.feed,
+            turned_feed: None,
             hole: false,
         }
     }

@@ -102,6 +102,9 @@ pub struct CoursePiece {
     pub to: Pose,
     /// Feed of the tip, mm/min; none for a rapid, and where the source states none.
     pub feed: Option<f64>,
+    /// Feed of the tip in a revolution of the part, mm, where the source states one at a constant cutting speed: then
+    /// there is no other.
+    pub turned_feed: Option<f64>,
     /// It is part of a cycle's hole: approach, feed, dwell and return of it. Pecks are the control's business: a hole is
     /// one piece down at feed and one up.
     pub hole: bool,

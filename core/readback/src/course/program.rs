@@ -257,6 +257,7 @@ impl<P: BlockRunner> ProgramCourse<P> {
                 from,
                 to,
                 feed,
+                turned_feed: None,
                 hole: motion.hole,
             };
             if count > 1 && motion.minutes > 0.0 && feed.is_some() {

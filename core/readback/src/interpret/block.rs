@@ -351,6 +351,7 @@ impl ControlState {
             (self.cycles.in_force(), "a cycle"),
             (self.frames.plane.is_some(), "a tilted plane"),
             (self.face.is_some(), "polar interpolation"),
+            (self.state.wrap.is_some(), "cylinder interpolation"),
             (self.state.tcp, "tool centre point control"),
         ];
         holds.iter().filter(|(holds, _)| *holds).map(|(_, name)| *name).collect()

@@ -20,6 +20,7 @@ use super::state::{
     ArcPlane, AxisLetters, ControlState, FeedMeaning, ModalState, MotionMode, MountedHead,
     OrientationMode, ReturnTo,
 };
+use super::wrap::WrapWords;
 use crate::lexicon::Lexicon;
 use crate::{
     BlockEffect, Coolants, Corners, MachineState, Offsets, ProgramEvent, SpindleState, Stance,
@@ -121,6 +122,8 @@ impl ControlState {
             head_by_hand: None,
             face_words: FaceWords::of(machine, &axes),
             face: None,
+            wrap_words: WrapWords::of(machine, &axes),
+            wrap_outside: None,
             axes,
             modal: ModalState::new(lexicon, machine.control.units),
             frames: FrameStack::default(),
@@ -142,6 +145,7 @@ impl ControlState {
                 tcp: false,
                 plane: None,
                 face: None,
+                wrap: None,
                 work_offset: None,
                 spindle: SpindleState::Off,
                 coolants: Coolants::default(),

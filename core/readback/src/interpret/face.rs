@@ -7,12 +7,13 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::face_mode::FaceMode;
 
 use super::block::BlockRequest;
+use super::block_words::{BlockWords, bit};
 use super::go::{MotionTarget, shorter};
 use super::state::{AxisLetters, ControlState};
 use crate::{Curve, Interpolation, MotionKind};
 
 /// An axis that is so near to a value shows it: radians and mm.
-const THERE: f64 = 1e-6;
+pub(super) const THERE: f64 = 1e-6;
 
 /// What a machine is in its polar interpolation.
 #[derive(Clone, Debug)]
@@ -92,6 +93,27 @@ impl ControlState {
         Ok(())
     }
 
+    /// `G137 C0`: the turning axis' word beside the word of the mode is the angle from which its frame counts.
+    pub(super) fn face_zero(&mut self, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
+        let turning = self.face_words.as_ref().map(|words| words.mode.turning);
+        let name = turning.and_then(|place| self.machine.axes[place].name.bytes().next());
+        let Some(letter) = name.filter(|letter| words.present & bit(*letter) != 0) else {
+            return Ok(());
+        };
+        let angle = words.take(letter);
+        words.present &= !bit(letter);
+        match angle {
+            Some(angle) if angle != 0.0 => {
+                let message = format!(
+                    "polar interpolation begins, and counts from {} {angle}: only from zero is it followed",
+                    char::from(letter)
+                );
+                Err(self.refuse("nc-mode", message))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Why the mode cannot begin where the axes stand.
     fn stands_apart(&self, mode: &FaceMode) -> Option<String> {
         let axis = &self.machine.axes[mode.turning];
@@ -138,10 +160,12 @@ impl ControlState {
             || asked.change
             || asked.tcp_on
             || asked.length_off;
-        match other && self.face.is_some() {
+        match other && (self.face.is_some() || self.state.wrap.is_some()) {
             true => {
-                let message = "polar interpolation is in force, and this is none of its straight moves: what the machine does \
-                               then is not followed";
+                let mode = if self.face.is_some() { "polar" } else { "cylinder" };
+                let message = format!(
+                    "{mode} interpolation is in force, and this is none of its straight moves: what the machine does then is not followed"
+                );
                 Err(self.refuse("nc-mode", message))
             }
             false => Ok(()),

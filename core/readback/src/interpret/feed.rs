@@ -37,10 +37,14 @@ impl ControlState {
                 InverseTime::Seconds => 1.0 / (60.0 * feed),
             },
             FeedMeaning::PerMinute => self.feed_length(way, tip, from, to) / feed,
-            FeedMeaning::PerRevolution if self.modal.speed > 0.0 => {
-                self.feed_length(way, tip, from, to) / (feed * self.modal.speed)
+            FeedMeaning::PerRevolution => {
+                let ends = [from.pose.tip, to.pose.tip];
+                let rpm = self.state.spindle.surface_rpm(ends).unwrap_or(self.modal.speed);
+                if rpm <= 0.0 {
+                    return (0.0, 0.0);
+                }
+                self.feed_length(way, tip, from, to) / (feed * rpm)
             }
-            FeedMeaning::PerRevolution => return (0.0, 0.0),
         };
         if minutes > 0.0 { (tip / minutes, minutes) } else { (0.0, 0.0) }
     }
@@ -51,6 +55,9 @@ impl ControlState {
         let counted = self.machine.control.tcp_feed_length;
         if self.face.is_some() || self.state.tcp && tip > STANDS && counted == TcpFeedLength::Tip {
             return tip;
+        }
+        if let Some(mode) = &self.state.wrap {
+            return mode.way(&from.joints, &to.joints);
         }
         let mut squares = 0.0;
         let mut longest = 0.0;

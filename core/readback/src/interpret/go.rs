@@ -94,6 +94,9 @@ impl ControlState {
         if self.face.is_some() {
             return self.lead_on_face(kind, path, target);
         }
+        if self.state.wrap.is_some() {
+            self.straight_on_mantle(kind, path, target)?;
+        }
         let from = self.at;
         let tips = self.tip_words();
         if let Some(vector) = target.vector {
@@ -235,7 +238,7 @@ impl ControlState {
                 }
             }
         }
-        let turned = self.take_said(target);
+        let turned = self.take_said(target) | self.turned_by_length();
         self.follow(turned);
     }
 

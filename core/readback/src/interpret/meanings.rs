@@ -19,10 +19,22 @@ impl ControlState {
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         match meaning {
-            Meaning::FaceTransformation => return self.begin_face(),
+            Meaning::FaceTransformation => {
+                self.face_zero(words)?;
+                return self.begin_face();
+            }
             Meaning::FaceTransformationOff => return self.end_face(),
+            Meaning::CylinderTransformation => {
+                return match code {
+                    Some(code) => self.wrap_code(code, words),
+                    None => self.begin_wrap(None, "its word"),
+                };
+            }
             // One word ends all transformations of some controls.
-            Meaning::TcpOff => self.end_face()?,
+            Meaning::TcpOff => {
+                self.end_face()?;
+                self.end_wrap()?;
+            }
             _ => {}
         }
         if self.sets_mode(meaning) || asked.takes(code, meaning) {
@@ -166,7 +178,6 @@ fn is_not_followed(meaning: Meaning) -> bool {
             | Meaning::Scale
             | Meaning::Mirror
             | Meaning::Polar
-            | Meaning::CylinderTransformation
             | Meaning::Diameter
             | Meaning::LengthNegative
             | Meaning::LengthAdded

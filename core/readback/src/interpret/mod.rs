@@ -51,6 +51,7 @@ mod state;
 mod statements;
 mod tools;
 mod variables;
+mod wrap;
 
 use std::io::{Read, Seek};
 use std::sync::Arc;

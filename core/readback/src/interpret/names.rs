@@ -220,6 +220,17 @@ impl ControlState {
                 return planes::call(self, name, arguments);
             }
             (_, WordMeaning::Means(Meaning::TiltedPlaneOff)) => return planes::end(self),
+            (_, WordMeaning::Means(Meaning::CylinderTransformation)) => {
+                let diameter = match arguments.first() {
+                    Some(Some(value)) => {
+                        let worth = self.variables.worth(value);
+                        Some(worth.map_err(|finding| self.placed(*finding).boxed())?)
+                    }
+                    _ => None,
+                };
+                let radius = diameter.map(|diameter| diameter * self.modal.unit / 2.0);
+                return self.begin_wrap(radius, name);
+            }
             (_, WordMeaning::Means(Meaning::Smoothing)) => {
                 let tolerance = match arguments.first() {
                     // `#HSC ON [CONTERROR 0.01]` says it by a word.

@@ -77,6 +77,7 @@ impl ControlState {
             && !self.in_machine
             && !self.hole
             && self.face.is_none()
+            && self.state.wrap.is_none()
             && self.axes.are_cartesian()
             && self.machine.word_map.is_none()
             && self.machine.along.is_none()

@@ -10,6 +10,9 @@ use super::state::ControlState;
 use crate::g_code::GCode;
 use crate::{ProgramEvent, SpindleState};
 
+/// Metres in a foot.
+const FOOT: f64 = 0.3048;
+
 impl ControlState {
     pub(super) fn tool_and_spindle(
         &mut self,
@@ -94,7 +97,8 @@ impl ControlState {
                 if self.modal.surface_speed =>
             {
                 SpindleState::Surface {
-                    speed: self.modal.speed,
+                    // Feet a minute in an inch program.
+                    speed: self.modal.speed * if self.modal.unit > 1.0 { FOOT } else { 1.0 },
                     most: self.modal.most_speed,
                     clockwise: turning == SpindleRequest::Clockwise,
                 }

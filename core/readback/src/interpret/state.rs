@@ -61,6 +61,10 @@ pub(super) struct ControlState {
     pub face_words: Option<super::face::FaceWords>,
     /// The polar interpolation in force.
     pub face: Option<Box<super::face::FaceReading>>,
+    /// The same of cylinder interpolation.
+    pub wrap_words: Option<super::wrap::WrapWords>,
+    /// Which word is which axis outside of the cylinder interpolation that is in force.
+    pub wrap_outside: Option<Box<AxisLetters>>,
     /// The spline whose control points are told, if one is.
     pub spline: Option<Box<OpenSpline>>,
     /// The variable of joint positions that a robot's program has filled last.

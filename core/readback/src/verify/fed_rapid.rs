@@ -77,7 +77,8 @@ impl<C: Course> Verifier<'_, C> {
 
     /// The machine file has rapids as feed moves, or there are none in the mode that the control is in.
     fn has_linear_rapids(&self, motion: &Motion) -> bool {
-        self.rules.linear_rapids || motion.state.face.is_some()
+        let state = &motion.state;
+        self.rules.linear_rapids || state.face.is_some() || state.wrap.is_some()
     }
 
     /// A rapid of the course is made at feed: where the machine file has it so, as fast as the axes hold.

@@ -73,7 +73,7 @@ impl<C: Course> Verifier<'_, C> {
         places: &[ToolPlace],
         element: &Element,
     ) {
-        let Some(asked) = element.feed else {
+        let Some(asked) = element.feed.or_else(|| turned_feed(motion, element)) else {
             return;
         };
         match self.feed_verdict(motion, places, asked) {
@@ -172,6 +172,12 @@ impl<C: Course> Verifier<'_, C> {
         }
         rounded
     }
+}
+
+/// The feed that an element asks for in a revolution of the part, mm/min as fast as the part turns on the motion.
+fn turned_feed(motion: &Motion, element: &Element) -> Option<f64> {
+    let ends = [motion.from.pose.tip, motion.to.pose.tip];
+    Some(element.turned_feed? * motion.state.spindle.surface_rpm(ends)?)
 }
 
 /// What limits a feed.

@@ -92,6 +92,7 @@ impl<C: Course> Verifier<'_, C> {
             matches!(element.what, ElementKind::Cut)
                 && Arc::ptr_eq(asked, &element.asked)
                 && element.feed == left.feed
+                && element.turned_feed.is_none()
         });
         if !quiet || !alike || !Arc::ptr_eq(state, &motion.state) {
             return false;

@@ -57,7 +57,11 @@ impl<C: Course> Verifier<'_, C> {
         }
         let mut cuts = self.track.kept().iter().take(last + 1).filter(|element| element.is_cut());
         let first = cuts.next()?;
-        let same = |other: &Element| Arc::ptr_eq(asked, &other.asked) && other.feed == first.feed;
+        let same = |other: &Element| {
+            Arc::ptr_eq(asked, &other.asked)
+                && other.feed == first.feed
+                && other.turned_feed.is_none()
+        };
         (same(first) && cuts.all(same)).then_some(first.feed)
     }
 
@@ -80,7 +84,9 @@ impl<C: Course> Verifier<'_, C> {
                 continue;
             }
             let one = first.get_or_insert(element);
-            differ |= !Arc::ptr_eq(&one.asked, &element.asked) || one.feed != element.feed;
+            differ |= !Arc::ptr_eq(&one.asked, &element.asked)
+                || one.feed != element.feed
+                || one.turned_feed != element.turned_feed;
             let span = free(&middle, &element.from, &element.to, &bound);
             // The way back lies on the same line.
             let back = ahead.dot(&(element.to.point - element.from.point)) < 0.0;

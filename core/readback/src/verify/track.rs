@@ -42,6 +42,8 @@ pub(super) struct Element {
     pub asked: Arc<CutState>,
     /// mm/min.
     pub feed: Option<f64>,
+    /// mm a revolution of the part, at a constant cutting speed.
+    pub turned_feed: Option<f64>,
     /// Whether its end is the end of what the course calls one piece.
     pub ends: bool,
     /// How near the program has come to its end while it might stand there.
@@ -268,6 +270,7 @@ impl<C: Course> CourseTrack<C> {
         for (index, place) in places.iter().enumerate() {
             self.push(piece.line, what.clone(), [last, *place], piece.feed);
             if let Some(element) = self.elements.back_mut() {
+                element.turned_feed = piece.turned_feed;
                 element.ends = index + 1 == count;
             }
             last = *place;
@@ -301,6 +304,7 @@ impl<C: Course> CourseTrack<C> {
                     to,
                     asked: Arc::clone(&self.asked),
                     feed: piece.feed,
+                    turned_feed: None,
                     ends: true,
                     near: FAR,
                 });
@@ -338,6 +342,7 @@ impl<C: Course> CourseTrack<C> {
             to: ends[1],
             asked: Arc::clone(&self.asked),
             feed,
+            turned_feed: None,
             ends: true,
             near: FAR,
         });

@@ -36,6 +36,7 @@ fn state(solver: &Arc<Solver>) -> Arc<MachineState> {
         tcp: false,
         plane: None,
         face: None,
+        wrap: None,
         work_offset: None,
         spindle: SpindleState::Off,
         coolants: Coolants::default(),
@@ -77,6 +78,7 @@ fn strays(motion: &Motion, count: u64, piece: u64, t: f64) -> (f64, f64) {
         from: at(low),
         to: at(high),
         feed: None,
+        turned_feed: None,
         hole: false,
     };
     let [wanted, found] = [straight.at(t, 0.0), at(low + (high - low) * t)];
@@ -226,6 +228,7 @@ fn a_control_point_above_the_tip_goes_straight() {
         from: pose(V::zeros(), V::z()),
         to: pose(V::x() * 10.0, V::new(1.0, 0.0, 1.0)),
         feed: None,
+        turned_feed: None,
         hole: false,
     };
     let guided = |t: f64| {

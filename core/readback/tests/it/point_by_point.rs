@@ -122,6 +122,7 @@ fn course(path: &[Pose]) -> Written {
             from: ends[0],
             to: ends[1],
             feed: Some(500.0),
+            turned_feed: None,
             hole: false,
         })
     });
@@ -141,6 +142,7 @@ fn what_is_found_does_not_hang_on_whether_each_line_is_told() {
         tcp: true,
         plane: None,
         face: None,
+        wrap: None,
         work_offset: None,
         spindle: SpindleState::Off,
         coolants: Coolants::default(),

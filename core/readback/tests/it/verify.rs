@@ -85,6 +85,7 @@ impl Asks {
                 from: pose(from),
                 to: pose(to),
                 feed,
+                turned_feed: None,
                 hole: self.hole,
             }),
         };
@@ -150,6 +151,7 @@ impl Does {
             tcp: false,
             plane: None,
             face: None,
+            wrap: None,
             work_offset: None,
             spindle: SpindleState::Off,
             coolants: Coolants::default(),

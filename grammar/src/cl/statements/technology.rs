@@ -183,10 +183,11 @@ fn only_whole(items: &[LineItem<'_>]) -> Option<u32> {
     whole.then_some(value as u32)
 }
 
-/// `MODE/MILL`; what else it may be is left to those who know it.
+/// `MODE/MILL`, `MODE/TURN`; what else it may be is left to those who know it.
 pub(crate) fn mode(items: &mut Items<'_, '_>) -> Read<Statement> {
     match items.line.items.as_slice() {
         [item] if word(item) == "MILL" => Ok(Statement::Milling),
+        [item] if word(item) == "TURN" => Ok(Statement::Turning),
         _ => items.other(),
     }
 }

@@ -123,6 +123,24 @@ impl ClInterpreter {
         }));
     }
 
+    /// `MODE/TURN`: a fault where no spindle turns the part.
+    pub(super) fn turning(&mut self, record: &Record<'_>) {
+        self.writer.milling = false;
+        if !self.reading.surface_speed {
+            self.fault(
+                record,
+                "mode-turn",
+                "MODE/TURN, and the spindle of this machine does not turn the part".to_owned(),
+                "[spindle] surface_speed = true in the machine file says that it does",
+            );
+        }
+    }
+
+    /// The spindle turns the part: feeds a revolution are the control's.
+    pub(super) fn turns_part(&self) -> bool {
+        self.reading.surface_speed && !self.reading.plans && !self.writer.milling
+    }
+
     /// Other tolerances of the control from here on; none: it keeps the path as it does by default.
     pub(super) fn smooth(&mut self, wanted: Option<Smoothing>, emit: &mut StepSink<'_>) {
         if wanted == self.smoothing {

@@ -23,7 +23,7 @@ impl ClInterpreter {
                 let (message, help) = match self.spindle.surface_speed {
                     Some(_) => (
                         "a feed per revolution at a constant cutting speed: how many revolutions a minute that is nobody knows here",
-                        "let the CAM system write the feed a minute (MMPM, IPM), or the speed in revolutions (RPM)",
+                        "a program without a planned feed (--plan); or a feed a minute (MMPM, IPM), or the speed in revolutions (RPM)",
                     ),
                     None => (
                         "a feed per revolution needs a spindle speed",
@@ -34,6 +34,27 @@ impl ClInterpreter {
                 None
             }
         }
+    }
+
+    /// A feed of so many mm a revolution of the part, which the control keeps.
+    pub(super) fn turned_feed(&mut self, record: &Record<'_>, feed: f64) -> Option<MoveFeed> {
+        let turns = self.spindle.surface_speed.is_some() || self.spindle.rpm.is_some();
+        if !turns {
+            return self.resolved(record, ModalFeed::PerRevolution(feed));
+        }
+        if !self.spindle.may_cut {
+            self.cut_standing(record);
+        }
+        if std::mem::take(&mut self.tools.threads) {
+            self.fault(
+                record,
+                "thread",
+                "a cut with a tool for threads (TLDATA/THREAD): a move at a feed does not begin at the same angle of the spindle in each pass"
+                    .to_owned(),
+                "the thread by the control's own words: [cl.words] in the machine file gives its lines",
+            );
+        }
+        Some(MoveFeed::PerRevolution(feed))
     }
 
     /// The feed of cuts that the file gives none.

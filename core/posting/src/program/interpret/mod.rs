@@ -319,12 +319,16 @@ impl ClInterpreter {
             Statement::Coolant(word) => self.set_coolant(record, word, emit),
             Statement::LoadTool(tool) => self.load_read(record, tool, emit),
             Statement::SelectTool(number) => self.select_tool(*number, emit),
-            Statement::ToolData { numbers, .. } => self.cutter(record, numbers, 2),
+            Statement::ToolData { kinds, numbers } => {
+                self.tools.threads = kinds.iter().any(|kind| kind == "THREAD");
+                self.cutter(record, numbers, 2);
+            }
             Statement::Cutter(numbers) => self.cutter(record, numbers, 6),
             Statement::Units(units) => self.set_units(record, *units),
             Statement::Multax(true) => {}
             Statement::Multax(false) => self.axis = Vector3::z(),
             Statement::Milling => self.writer.milling = true,
+            Statement::Turning => self.turning(record),
             Statement::Mcs { axes, origin } => self.mcs(record, axes, origin),
             Statement::Msys { origin, x, y } => self.msys(record, *origin, [*x, *y]),
             Statement::Circle(circle) => {

@@ -38,6 +38,8 @@ pub(super) struct FileTools {
     /// Diameter and corner radius of the cutter described since the last tool was loaded, mm.
     pub cutter: [Option<f64>; 2],
     pub cutter_length: Option<f64>,
+    /// The cutter described last is one for threads (`TLDATA/THREAD`).
+    pub threads: bool,
 }
 
 /// What the file says of the spindle.

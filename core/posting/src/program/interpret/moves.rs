@@ -315,7 +315,10 @@ impl ClInterpreter {
             );
             return None;
         };
-        self.resolved(record, feed)
+        match feed {
+            ModalFeed::PerRevolution(feed) if self.turns_part() => self.turned_feed(record, feed),
+            feed => self.resolved(record, feed),
+        }
     }
 
     /// Takes `tip` as where the tool stands.

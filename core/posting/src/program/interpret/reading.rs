@@ -56,6 +56,8 @@ pub struct ReadingOptions {
     pub print: Print,
     /// The spindle turns the part: `SFM` and `SMM` are constant cutting speeds.
     pub surface_speed: bool,
+    /// The feed is planned, which is one a minute.
+    pub plans: bool,
     /// Tolerances by which the control may leave the path, by operation.
     pub smoothing: SmoothingRules,
 }

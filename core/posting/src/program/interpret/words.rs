@@ -63,7 +63,10 @@ impl ClInterpreter {
                 record,
                 "refused-word",
                 format!("{word} moves the tool, or says which records do, and post does not know this form of it: it cannot be left out"),
-                "let the CAM system write GOTO and CIRCLE instead; [cl.words] in the machine file gives the lines of the program that it stands for",
+                match word {
+                    "THREAD" | "PITCH" => "[cl.words] in the machine file gives the control's own words for a thread: a feed move does not hold the angle of the spindle",
+                    _ => "let the CAM system write GOTO and CIRCLE instead; [cl.words] in the machine file gives the lines of the program that it stands for",
+                },
             );
             return true;
         }

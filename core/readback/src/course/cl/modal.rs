@@ -238,6 +238,10 @@ impl ClModal {
                 self.strange.mills = true;
                 Ok(())
             }
+            Statement::Turning => {
+                self.strange.mills = false;
+                Ok(())
+            }
             Statement::Circle(_)
             | Statement::ArcMove(_)
             | Statement::Nurbs
@@ -331,6 +335,7 @@ impl ClModal {
             | Statement::PartSurface(_)
             | Statement::AlongArc(_)
             | Statement::Milling
+            | Statement::Turning
             | Statement::Circle(_)
             | Statement::ArcMove(_)
             | Statement::Nurbs
@@ -554,6 +559,7 @@ impl ClModal {
             from,
             to,
             feed: None,
+            turned_feed: None,
             hole: false,
         };
         Some(piece.length())
@@ -570,12 +576,19 @@ impl ClModal {
         out: &mut CourseItems,
     ) {
         let MotionFeed { kind, feed } = pace;
+        let turned_feed = match (kind, self.feed) {
+            (MotionKind::Feed, Some(FeedWord::PerRevolution(turned))) if !hole => {
+                Some(turned).filter(|_| self.tools.rpm().is_none())
+            }
+            _ => None,
+        };
         self.measured = true;
         self.strange.moved = true;
         let known = !(self.only_said && curve == Curve::Straight);
         let item = match self.stands.filter(|_| known) {
             Some(from) => {
-                CourseItem::Piece(CoursePiece { line, kind, curve, from, to, feed, hole })
+                let piece = CoursePiece { line, kind, curve, from, to, feed, turned_feed, hole };
+                CourseItem::Piece(piece)
             }
             None => CourseItem::Reach(ReachedPose { line, kind, to, feed, hole }),
         };

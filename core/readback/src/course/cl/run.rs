@@ -22,6 +22,7 @@ impl ClModal {
         }
         match self.feed {
             Some(FeedWord::InverseTime(_)) => None,
+            Some(FeedWord::PerRevolution(_)) if self.tools.rpm().is_none() => None,
             Some(word) => Some(self.per_minute(word, || None)),
             None => Some(self.settings.feed),
         }

@@ -159,8 +159,17 @@ fn belts_that_axes_share_keep_their_largest_feed() {
         std::fs::write(file("core.toml"), machine).unwrap();
         std::fs::write(file("part.apt"), text).unwrap();
         let (machine, part, program) = (file("core.toml"), file("part.apt"), file("part.nc"));
-        let run =
-            post(&["-q", "-m", &machine, "--tool-length=40", "--verify", &part, "-o", &program]);
+        let run = post(&[
+            "-q",
+            "-m",
+            &machine,
+            "--set=control.units=mm",
+            "--tool-length=40",
+            "--verify",
+            &part,
+            "-o",
+            &program,
+        ]);
         assert_eq!(run.code, 0, "{}", run.err);
         let program = std::fs::read_to_string(&program).unwrap();
         let (mut at, mut feed): ([f64; 2], f64) = ([0.0; 2], 0.0);

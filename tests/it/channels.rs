@@ -85,7 +85,10 @@ fn each_control_is_told_by_its_own_line_and_the_reader_knows_it() {
             let found = program.lines().filter(|text| text.ends_with(line)).count();
             assert_eq!(found, 1, "{line}\n{program}");
             // A program without its wait, or with another, is not what the CL file asks for.
-            for (instead, says) in [("", "left out"), (&line.replace('2', "5"), "")] {
+            let other = [("M101", "M104"), ("L2", "L5"), ("(2,", "(5,")];
+            let other =
+                other.iter().fold(line.to_owned(), |line, (from, to)| line.replace(from, to));
+            for (instead, says) in [("", "left out"), (&other, "in place of")] {
                 fs::write(folder.join(name), program.replace(line, instead)).unwrap();
                 let run = post_in(folder, &["verify", name, "-m", "both.job.toml"]);
                 assert_eq!(run.code, 1, "{instead}\n{}{}", run.out, run.err);
@@ -234,10 +237,10 @@ fn a_wait_that_cannot_be_is_refused_by_its_line() {
 }
 
 #[test]
-fn one_channel_alone_moves_what_is_shared() {
+fn what_is_shared_is_in_one_program_alone() {
     let marks = pair(&["SYNC/1"], &["SYNC/1"]);
     for (more, says) in
-        [("shared = [\"X\"]", "both move X"), ("shared_spindle = true", "both turn the spindle")]
+        [("shared = [\"X\"]", "both have X"), ("shared_spindle = true", "both have the spindle")]
     {
         let folder = shop(&marks, &format!("{PLAIN}\n{more}"), "fanuc");
         refused(
@@ -252,7 +255,7 @@ fn one_channel_alone_moves_what_is_shared() {
     let folder = folder.path();
     let job = read(folder, "both.job.toml").replace("m2.toml", "m1.toml");
     fs::write(folder.join("same.job.toml"), job).unwrap();
-    refused(folder, &["same.job.toml"], &["both move X", "both move Z"]);
+    refused(folder, &["same.job.toml"], &["both have X", "both have Z"]);
     none_is_written(folder);
     // Made one by one, nobody would look at their marks.
     refused(folder, &["batch", "both.job.toml", "-o", "all.csv"], &["made together"]);
@@ -278,6 +281,27 @@ fn predicted_times_join_the_channels_where_they_are_asked_for() {
     assert!((waits[0] - 20.0).abs() < 1e-6 && waits[1] == 0.0, "{waits:?}");
 }
 
+/// Of three channels two may wait for one another: a line that names the third is another wait.
+#[test]
+fn the_reader_knows_who_waits() {
+    let [first, second] = pair(&["SYNC/1,1,2"], &["SYNC/1,2,1"]);
+    let third = Channel { waits: Vec::new() };
+    let folder =
+        shop(&[first, second, third], "word = \"M{n+99} P{digits}\"\nmarks = [1, 9]", "fanuc");
+    let folder = folder.path();
+    good(folder, &["both.job.toml", "-q"]);
+    let program = read(folder, "c1.nc");
+    assert!(program.contains("M100 P12\n"), "{program}");
+    for other in ["M100 P13", "M100 P123"] {
+        fs::write(folder.join("c1.nc"), program.replace("M100 P12", other)).unwrap();
+        let says = [
+            "mark 1 of channels 1, ",
+            "in place of a wait for other channels at mark 1 of channels 1, 2",
+        ];
+        refused(folder, &["verify", "c1.nc", "-m", "both.job.toml"], &says);
+    }
+}
+
 #[test]
 fn a_builder_sees_what_a_mark_becomes() {
     let folder = shop(&pair(&["SYNC/1"], &["SYNC/1"]), PLAIN, "fanuc");
@@ -287,6 +311,7 @@ fn a_builder_sees_what_a_mark_becomes() {
         ("word = \"M{n}\"", "[wait] has no marks"),
         ("word = \"M100\"\nmarks = [1, 2]", "has {n}"),
         ("word = \"M{n}\"\nmarks = [9, 2]", "marks from 9 to 2"),
+        ("word = \"M{n}\"\nmarks = [1, 199]", "M1 is no wait"),
         ("word = \"M{n}\"\nmarks = [1, 5]\nshared = [\"Q\"]", "shared has Q"),
         ("word = \"M{n}\"\nmarks = [1, 5]\nchannel = 3\nchannels = 2", "channel 3 of 2 channels"),
         ("word = \"M{n\"\nmarks = [1, 5]", "`}` is missing"),

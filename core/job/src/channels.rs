@@ -50,7 +50,7 @@ struct Wait {
 /// Joins the programs, in the order of their channels from 1, and tells each how long it waits.
 ///
 /// # Errors
-/// Channels wait for one another for ever, or two of them move one axis or turn one spindle.
+/// Channels wait for one another for ever, or two of them have one axis or one spindle.
 pub fn join(programs: &mut [ChannelProgram<'_>]) -> Result<JoinedChannels, Vec<Diagnostic>> {
     let shared = shared(programs);
     if !shared.is_empty() {
@@ -172,37 +172,30 @@ fn deadlock(programs: &[ChannelProgram<'_>], waits: &[Vec<Wait>], stands: &[usiz
         .at(place)
 }
 
-/// What two channels both move or turn, and only one of them can.
+/// What two channels both have: every program has words of all its axes, and ends by stopping the spindle, so that it would
+/// move and stop what the other one works with.
 fn shared(programs: &[ChannelProgram<'_>]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (index, one) in programs.iter().enumerate() {
         for (other_index, other) in programs.iter().enumerate().skip(index + 1) {
-            let mut tell = |what: String| {
+            let mut tell = |what: &str| {
                 let message = format!(
-                    "channels {} and {} both {what}, and one program alone may do so: handing it over is not known here",
+                    "channels {} and {} both have {what}, and the program of one would move or stop it under that of the other: handing it over is not known here",
                     index + 1,
                     other_index + 1
                 );
-                let help = "a machine file for each channel, with the axes that it has of its own; [wait] shared names those of several";
+                let help = "a machine file for each channel, with the axes and the spindle that it has alone; [wait] shared names what several have";
                 found.push(Diagnostic::error("channel-shared", message).help(help));
             };
             let same = one.source == other.source;
-            for axis in &one.outcome.report.axes {
-                let moves = |of: &ChannelProgram<'_>| {
-                    let ranges = &of.outcome.report.axes;
-                    ranges.iter().any(|range| range.name == axis.name && range.way > 0.0)
-                };
-                let both = same || one.shares(&axis.name) || other.shares(&axis.name);
-                if both && moves(one) && moves(other) {
-                    tell(format!("move {}", axis.name));
+            for axis in &one.machine.axes {
+                let both = other.machine.axes.iter().any(|own| own.name == axis.name);
+                if both && (same || one.shares(&axis.name) || other.shares(&axis.name)) {
+                    tell(&axis.name);
                 }
             }
-            let shares = |of: &ChannelProgram<'_>| {
-                of.machine.wait.as_ref().is_some_and(|wait| wait.shares_spindle)
-            };
-            let turns = one.outcome.report.turns_spindle && other.outcome.report.turns_spindle;
-            if turns && (same || shares(one) || shares(other)) {
-                tell("turn the spindle".to_owned());
+            if same || one.shares_spindle() || other.shares_spindle() {
+                tell("the spindle");
             }
         }
     }
@@ -210,7 +203,12 @@ fn shared(programs: &[ChannelProgram<'_>]) -> Vec<Diagnostic> {
 }
 
 impl ChannelProgram<'_> {
-    /// Its machine file says that others can move the axis.
+    /// Its machine file says that the spindle is that of others as well.
+    fn shares_spindle(&self) -> bool {
+        self.machine.wait.as_ref().is_some_and(|wait| wait.shares_spindle)
+    }
+
+    /// Its machine file says that others have the axis as well.
     fn shares(&self, axis: &str) -> bool {
         let named = |joint: &usize| self.machine.axes[*joint].name == axis;
         self.machine.wait.as_ref().is_some_and(|wait| wait.shared.iter().any(named))

@@ -9,6 +9,12 @@ use crate::program_text::{plain, unnumbered};
 /// Most channels of a machine.
 pub const MOST_CHANNELS: u32 = 4;
 
+/// Words that mean something else to every control (ISO 6983 and what tap, tool change and subprograms have besides).
+const TAKEN: [&str; 19] = [
+    "M0", "M1", "M2", "M3", "M4", "M5", "M6", "M7", "M8", "M9", "M13", "M14", "M17", "M19", "M29",
+    "M30", "M60", "M98", "M99",
+];
+
 /// What stands for channels in a line, besides `{n}` for the mark.
 const CHANNELS: [&str; 4] = ["{channels}", "{digits}", "{sum}", "{others}"];
 
@@ -23,7 +29,7 @@ pub struct WaitRule {
     pub channel: Option<u32>,
     /// How many channels there are, likewise.
     pub channels: Option<u32>,
-    /// Axes that other channels can move as well: places in the chain.
+    /// Axes that other channels have as well: places in the chain.
     pub shared: Vec<usize>,
     /// The spindle is that of other channels as well.
     pub shares_spindle: bool,
@@ -105,6 +111,13 @@ impl WaitRule {
         self.marks
     }
 
+    /// The mark as its line has it: with the channels upwards where that names any, else without.
+    pub fn written(&self, mark: &SyncMark) -> SyncMark {
+        let named = CHANNELS.iter().any(|name| self.names(name));
+        let channels = self.line(mark).map(|line| line.channels).unwrap_or_default();
+        SyncMark { number: mark.number, channels: if named { channels } else { Vec::new() } }
+    }
+
     /// The line of a mark at which `channels` wait; none if it speaks of channels that nobody knows.
     fn text(&self, number: u32, own: Option<u32>, channels: &[u32]) -> Option<String> {
         let mut word = self.word.clone()?;
@@ -130,6 +143,14 @@ impl WaitRule {
             Err(fault) => return Some(fault),
         };
         let line = |mark: u32| template.fill(&[f64::from(mark)], 1.0);
+        let all = (self.marks[0]..=self.marks[1]).filter_map(|mark| line(mark).ok());
+        if let Some(taken) =
+            all.map(|line| plain(&line)).find(|line| TAKEN.contains(&line.as_str()))
+        {
+            return Some(format!(
+                "{taken} is no wait: marks begin behind the words that mean something else"
+            ));
+        }
         match (template.numbers(), line(self.marks[0]), line(self.marks[1])) {
             (1, Ok(first), Ok(last)) if first != last || self.marks[0] == self.marks[1] => None,
             (1, Err(fault), _) | (1, _, Err(fault)) => Some(fault.to_string()),
@@ -144,18 +165,21 @@ impl WaitRule {
         let mut lines = HashMap::new();
         let named = CHANNELS.iter().any(|name| self.names(name));
         let count = self.channels.unwrap_or(MOST_CHANNELS);
-        let all = 1..=count;
-        let sets = (0_u32..1 << count).filter(|set| set.count_ones() >= 2 && named || *set == 0);
+        let is_own = |set: u32| self.channel.is_none_or(|own| set >> (own - 1) & 1 == 1);
+        let sets = (0_u32..1 << count)
+            .filter(|set| if named { set.count_ones() >= 2 && is_own(*set) } else { *set == 0 });
         for set in sets {
             let channels: Vec<u32> =
-                all.clone().filter(|channel| set >> (channel - 1) & 1 == 1).collect();
-            let owns = channels.iter().copied().map(Some).chain([None]);
-            for own in owns.filter(|own| {
-                self.channel.is_none() || own.is_none_or(|own| self.channel == Some(own))
-            }) {
-                for mark in self.marks[0]..=self.marks[1] {
-                    if let Some(text) = self.text(mark, own.or(self.channel), &channels) {
-                        lines.insert(plain(&text), mark);
+                (1..=count).filter(|channel| set >> (channel - 1) & 1 == 1).collect();
+            let owns = match self.channel {
+                None if named => channels.clone(),
+                own => vec![own.unwrap_or_default()],
+            };
+            for own in owns {
+                for number in self.marks[0]..=self.marks[1] {
+                    if let Some(text) = self.text(number, Some(own), &channels) {
+                        let channels = channels.clone();
+                        lines.insert(plain(&text), SyncMark { number, channels });
                     }
                 }
             }
@@ -187,14 +211,14 @@ fn value(name: &str, own: Option<u32>, channels: &[u32]) -> Option<String> {
 #[derive(Clone, Debug, Default)]
 pub struct WaitLines {
     /// Each, without blanks, with its mark.
-    lines: HashMap<String, u32>,
+    lines: HashMap<String, SyncMark>,
 }
 
 impl WaitLines {
-    /// The mark that a line of a program waits at; none if it does something else.
-    pub fn mark(&self, line: &str) -> Option<u32> {
+    /// The mark that a line of a program waits at, with the channels that it names; none if it does something else.
+    pub fn mark(&self, line: &str) -> Option<&SyncMark> {
         let line = plain(line);
         let known = self.lines.get(&line).or_else(|| self.lines.get(unnumbered(&line)));
-        known.copied()
+        known
     }
 }

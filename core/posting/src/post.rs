@@ -589,7 +589,6 @@ impl<'a> Post<'a> {
                 .collect(),
             plugins: Vec::new(),
             waits: stages.timing.waits().to_vec(),
-            turns_spindle: stages.timing.turns_spindle(),
             warnings: self.findings.warnings(),
         }
     }

@@ -102,9 +102,6 @@ pub struct PostingReport {
     /// Where it waits for other channels.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub waits: Vec<ReportedWait>,
-    /// It turns the spindle.
-    #[serde(skip)]
-    pub turns_spindle: bool,
     /// Warnings, as sentences.
     pub warnings: Vec<String>,
 }

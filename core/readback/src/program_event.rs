@@ -1,6 +1,7 @@
 //! What a program or a CL file asks for besides motion, in the same words for both, so that they can be compared.
 
 use nalgebra::Vector3;
+use post_grammar::SyncMark;
 use post_machine::description::surface_rpm;
 
 /// What a block asks for that is no motion: tool, spindle, coolant, wait, stop, remark, offset.
@@ -26,8 +27,9 @@ pub enum ProgramEvent {
         /// In turns of the spindle.
         revolutions: bool,
     },
-    /// The program waits for those of other channels, at this mark of the CL file.
-    Sync(u32),
+    /// The program waits for those of other channels, at this mark of the CL file: the channels are those
+    /// that the line of the program names.
+    Sync(SyncMark),
     /// `M0`.
     Stop,
     /// `M1`.

@@ -5,6 +5,7 @@
 //! Vocabulary: ISO 3592 and ISO 4343, and the forms that NX, Creo, SolidWorks CAM, CAMWorks and NCL write.
 
 use std::borrow::Cow;
+use std::fmt;
 
 /// One logical line (continuations joined) and where it stands.
 #[derive(Clone, Debug, PartialEq)]
@@ -257,6 +258,17 @@ pub struct SyncMark {
     pub number: u32,
     /// The channels that wait at it, counted from 1, the file's own first; empty where the file names none.
     pub channels: Vec<u32>,
+}
+
+impl fmt::Display for SyncMark {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "mark {}", self.number)?;
+        for (index, channel) in self.channels.iter().enumerate() {
+            let between = if index == 0 { " of channels " } else { ", " };
+            write!(formatter, "{between}{channel}")?;
+        }
+        Ok(())
+    }
 }
 
 /// One item after the slash.

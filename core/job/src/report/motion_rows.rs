@@ -444,7 +444,7 @@ impl<'m> MotionRows<'m> {
             }
             ProgramEvent::Stop => self.marks.event(self.came, "stop", "stop"),
             ProgramEvent::Sync(mark) => {
-                let text = format!("waits for channels at mark {mark}");
+                let text = format!("waits for channels at {mark}");
                 self.marks.event(self.came, "stop", text);
             }
             ProgramEvent::OptionalStop => self.marks.event(self.came, "stop", "optional stop"),

@@ -27,7 +27,7 @@ pub(super) fn told(machine: &Machine) -> Vec<String> {
     let shared = wait.shared.iter().map(|joint| machine.axes[*joint].name.as_str());
     let shared: Vec<&str> = shared.chain(wait.shares_spindle.then_some("the spindle")).collect();
     if !shared.is_empty() {
-        all.push(format!("other channels can move {} as well", shared.join(", ")));
+        all.push(format!("other channels have {} as well", shared.join(", ")));
     }
     all
 }

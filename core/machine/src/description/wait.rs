@@ -30,9 +30,10 @@ keys! {
         channel: Option<Count> = CHANNEL,
         /// How many channels there are; a job says it by its `[[channel]]` tables.
         channels: Option<Count> = CHANNEL,
-        /// Axes that other channels can move as well, such as C of the main spindle: one program of a job may move them.
+        /// Axes that other channels have as well, such as C of the main spindle: a job with both is refused, for the program
+        /// of each has words of all its axes.
         shared: Vec<Spanned<String>> = Bounds { default: Some("[]"), ..Bounds::ANY },
-        /// The spindle is that of other channels as well: one program of a job may turn it.
+        /// The spindle is that of other channels as well: a job with both is refused, for each program stops it at its end.
         shared_spindle: bool = Bounds::OFF,
     }
 }

@@ -14,7 +14,7 @@ use post_machine::along_word::AlongPrinter;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, LimitExcess};
 use post_machine::kinematics::Joints;
-use post_plugin::{Capabilities, Feed, Format, Spindle};
+use post_plugin::{Capabilities, Feed, Format};
 
 use crate::blocks::{BlockKind, MotionBlock};
 use crate::findings::Findings;
@@ -48,7 +48,6 @@ pub(crate) struct TimingStage<'a> {
     way: f64,
     statistics: Durations,
     waits: Vec<ReportedWait>,
-    turns_spindle: bool,
     low: LowFeeds,
     findings: Findings,
 }
@@ -112,7 +111,6 @@ impl<'a> TimingStage<'a> {
             way: 0.0,
             statistics: Durations::default(),
             waits: Vec::new(),
-            turns_spindle: false,
             low: LowFeeds::default(),
             findings: findings.clone(),
         })
@@ -121,11 +119,6 @@ impl<'a> TimingStage<'a> {
     /// The waits for other channels so far.
     pub(crate) fn waits(&self) -> &[ReportedWait] {
         &self.waits
-    }
-
-    /// The spindle was turned.
-    pub(crate) fn turns_spindle(&self) -> bool {
-        self.turns_spindle
     }
 
     /// Sums so far.
@@ -184,14 +177,8 @@ impl<'a> TimingStage<'a> {
     fn command(&mut self, line: u64, command: &Command) {
         match command {
             Command::Dwell(seconds) => self.statistics.other += seconds / 60.0,
-            Command::Spindle(spindle) => {
-                self.turns_spindle |= matches!(spindle, Spindle::On { .. });
-                self.turning.turn(*spindle);
-            }
-            Command::SurfaceSpeed { speed, most, .. } => {
-                self.turns_spindle = true;
-                self.turning.keep(*speed, *most);
-            }
+            Command::Spindle(spindle) => self.turning.turn(*spindle),
+            Command::SurfaceSpeed { speed, most, .. } => self.turning.keep(*speed, *most),
             Command::Sync(SyncWait { mark, line: wait }) => {
                 if self.waits.len() == MOST_WAITS {
                     let message = format!("more than {MOST_WAITS} waits for other channels");

@@ -180,6 +180,10 @@ impl ClWriter {
                 self.ended = true;
                 return Ok(());
             }
+            ProgramEvent::Sync(mark) if !mark.channels.is_empty() => {
+                let message = format!("{mark}: SYNC/{} waits for all channels", mark.number);
+                self.notes.push(Diagnostic::warning("convert", message));
+            }
             ProgramEvent::Unknown(word) => {
                 let message = format!("{word} is not carried over: nobody knows what it does");
                 self.notes.push(Diagnostic::warning("convert", message));
@@ -242,7 +246,7 @@ impl ClWriter {
             }
             ProgramEvent::Stop => out.push_str("STOP\n"),
             ProgramEvent::Sync(mark) => {
-                let _ = writeln!(out, "SYNC/{mark}");
+                let _ = writeln!(out, "SYNC/{}", mark.number);
             }
             ProgramEvent::OptionalStop => out.push_str("OPSTOP\n"),
             ProgramEvent::Operation(name) => self.begins = Some(name),

@@ -83,7 +83,7 @@ fn named(event: &StepEvent) -> String {
         ProgramEvent::Dwell { time, .. } => format!("a wait of {time} s"),
         ProgramEvent::Stop => "a stop".to_owned(),
         ProgramEvent::OptionalStop => "an optional stop".to_owned(),
-        ProgramEvent::Sync(mark) => format!("a wait for other channels at mark {mark}"),
+        ProgramEvent::Sync(mark) => format!("a wait for other channels at {mark}"),
         ProgramEvent::ToolChange { number, name } => {
             let number = number.map(|number| number.to_string());
             let tool = number.or_else(|| name.clone()).unwrap_or_default();

@@ -277,7 +277,7 @@ impl<R: Read + Seek> Interpreter<R> {
         runner.control.report.header = flow.reader().header_lines();
         runner.control.line = block.line;
         if let Some(lines) = runner.control.waits.as_ref().filter(|_| !matches!(more, Ok(false)))
-            && let Some(mark) = flow.text(block.line).and_then(|text| lines.mark(&text))
+            && let Some(mark) = flow.text(block.line).and_then(|text| lines.mark(&text).cloned())
         {
             runner.control.report.blocks += 1;
             std::mem::swap(done, &mut runner.control.done);

@@ -368,7 +368,7 @@ pub(super) fn event_name(event: &ProgramEvent) -> String {
     match event {
         ProgramEvent::Stop => "a stop".to_owned(),
         ProgramEvent::OptionalStop => "an optional stop".to_owned(),
-        ProgramEvent::Sync(mark) => format!("a wait for other channels at mark {mark}"),
+        ProgramEvent::Sync(mark) => format!("a wait for other channels at {mark}"),
         ProgramEvent::Dwell { time, revolutions: true } => format!("a dwell of {time} turns"),
         ProgramEvent::Dwell { time, .. } => format!("a dwell of {time} s"),
         other => format!("{other:?}"),

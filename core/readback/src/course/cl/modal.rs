@@ -297,7 +297,12 @@ impl ClModal {
             Statement::Delay(delay) => self.delay(record, *delay, out),
             Statement::Stop => self.tell(record, ProgramEvent::Stop, out),
             Statement::OptionalStop => self.tell(record, ProgramEvent::OptionalStop, out),
-            Statement::Sync(mark) => self.tell(record, ProgramEvent::Sync(mark.number), out),
+            Statement::Sync(_) if self.settings.allows("SYNC") => {}
+            Statement::Sync(mark) => {
+                let wait = self.settings.wait.as_ref();
+                let mark = wait.map_or_else(|| mark.clone(), |wait| wait.written(mark));
+                self.tell(record, ProgramEvent::Sync(mark), out);
+            }
             Statement::Head(name) => self.head(record, name, out),
             Statement::ToolPath { name, tool } => {
                 self.end_spline(record, out)?;

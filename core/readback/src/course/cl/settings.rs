@@ -5,6 +5,7 @@ use std::sync::Arc;
 use post_grammar::{MajorWord, Units};
 use post_machine::description::{EdgeSource, Insert, Machine, Print, ToolLength, WordRule};
 use post_machine::diagnostic::{FurtherFile, SourceFiles};
+use post_machine::wait_rule::WaitRule;
 
 /// How a CL file is meant. What `post` was told must be told here, so that the same job is judged.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +36,8 @@ pub struct ClSettings {
     pub tool_length: ToolLength,
     /// Words that the machine file has lines of the program for: they do what these lines do, and move nothing here.
     pub rules: Vec<WordRule>,
+    /// How the machine waits for other channels: a mark is as the line for it has it.
+    pub wait: Option<WaitRule>,
     /// What `PPRINT` is: a message, a remark or a line of the program.
     pub print: Print,
     /// What `INSERT` is: a remark or a line of the program.
@@ -55,6 +58,7 @@ impl ClSettings {
             turn: machine.turn,
             tool_length: machine.control.tool_length,
             rules: machine.word_rules.clone(),
+            wait: machine.wait.clone(),
             print: machine.control.print,
             insert: machine.control.insert,
             surface_speed: machine.spindle.surface_speed,

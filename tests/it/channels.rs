@@ -272,7 +272,7 @@ fn predicted_times_join_the_channels_where_they_are_asked_for() {
     let folder = shop(&channels, PLAIN, "fanuc");
     let folder = folder.path();
     let run = good(folder, &["both.job.toml", "--predict"]);
-    assert_contains(&run.out, &["together", "predicted; the channels meet 1 times"]);
+    assert_contains(&run.out, &["together", "predicted; the channels meet once"]);
     let waits = ["c1.json", "c2.json"].map(|name| {
         let told = read_json(&folder.join(name));
         assert_eq!(told["prediction"]["time"]["channel_waits_s"].as_array().unwrap().len(), 1);

@@ -223,9 +223,12 @@ pub fn text(joined: &JoinedChannels) -> String {
     }
     let kind = if joined.predicted { "predicted" } else { "nominal, without tool changes" };
     format!(
-        "{}\ntogether {}, {kind}; the channels meet {} times\n",
+        "\n{}together {}, {kind}; the channels meet {}\n",
         table.text(),
         clock(joined.time_s),
-        joined.meetings
+        match joined.meetings {
+            1 => "once".to_owned(),
+            meetings => format!("{meetings} times"),
+        }
     )
 }

@@ -218,7 +218,6 @@ impl WaitLines {
     /// The mark that a line of a program waits at, with the channels that it names; none if it does something else.
     pub fn mark(&self, line: &str) -> Option<&SyncMark> {
         let line = plain(line);
-        let known = self.lines.get(&line).or_else(|| self.lines.get(unnumbered(&line)));
-        known
+        self.lines.get(&line).or_else(|| self.lines.get(unnumbered(&line)))
     }
 }

@@ -530,12 +530,18 @@ impl ControlState {
     /// [`ControlState::turned`] of an axis that stands at `last`.
     #[inline]
     pub fn turned_from(&self, place: usize, value: f64, last: f64) -> f64 {
+        self.turned_counting(place, value, last, self.zero[place])
+    }
+
+    /// [`ControlState::turned_from`] where the word counts from `zero`, mm or radians.
+    #[inline]
+    pub fn turned_counting(&self, place: usize, value: f64, last: f64, zero: f64) -> f64 {
         let axis = &self.machine.axes[place];
         if !axis.joint.rotary {
             return value;
         }
         if axis.signed && self.modal.shortest.is_none() {
-            return by_sign(value, last);
+            return zero + by_sign(value - zero, last - zero);
         }
         let shortest = self.modal.shortest.unwrap_or(axis.range.is_some());
         if !shortest {

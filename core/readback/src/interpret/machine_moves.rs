@@ -61,7 +61,10 @@ impl ControlState {
                     .filter(|_| words.approached & (1 << letter) != 0)
                 {
                     Some(approach) => self.approach(place, joints[place], Some(approach)),
-                    None => self.turned(place, joints[place]),
+                    None => {
+                        let last = self.word_at(place);
+                        self.turned_counting(place, joints[place], last, 0.0)
+                    }
                 };
             }
         }

@@ -147,7 +147,7 @@ fn belts_that_axes_share_keep_their_largest_feed() {
     for _ in rounds {
         let folder = tempfile::tempdir().unwrap();
         let machine = format!(
-            "extends = \"router\"\nname = \"core\"\n[[leg]]\nname = \"L1\"\nat = \"Y\"\nfrom = [0, 0, 0]\nto = [0, 0, 0]\nbelt = [1, 1, 0]\nmax_feed = {BELT}\n[[leg]]\nname = \"L2\"\nat = \"Y\"\nfrom = [0, 0, 0]\nto = [0, 0, 0]\nbelt = [1, -1, 0]\nmax_feed = {BELT}\n"
+            "extends = \"router\"\nname = \"core\"\n[[drive]]\nname = \"L1\"\nis = \"X + Y\"\nmax_feed = {BELT}\n[[drive]]\nname = \"L2\"\nis = \"X - Y\"\nmax_feed = {BELT}\n"
         );
         let mut text = "LOADTL/1\nSPINDL/8000,RPM,CLW\nRAPID\nGOTO/0,0,60\nFEDRAT/600,MMPM\nGOTO/0,0,20\nFEDRAT/9000,MMPM\n".to_owned();
         for _ in 0..8 {

@@ -124,7 +124,6 @@ fn places<'a>(probe: &'a Probe<'_>) -> impl Iterator<Item = Joints> + use<'a> {
 fn plus(leg: &Leg) -> String {
     match leg.drive {
         Drive::Strut => "it grows".to_owned(),
-        Drive::Belt { along } => format!("it pulls to {}", named(along.normalize())),
         Drive::Slide { along, .. } => format!("its carriage moves to {}", named(along)),
         Drive::Formula { turns: true, .. } => "by its formula, deg".to_owned(),
         Drive::Formula { .. } => "by its formula, mm".to_owned(),

@@ -37,9 +37,6 @@ keys! {
         at: Spanned<String>,
         /// Its end on the platform, mm, machine frame, all axes at zero.
         to: [KeyedNumber; 3],
-        /// A belt that several linear axes share: its way for one mm of the platform in each direction, `[1, 1, 0]` where it is
-        /// X + Y (CoreXY); the drive is that way, mm. Between `on` and `at` there are linear axes then.
-        belt: Option<[KeyedNumber; 3]>,
         /// Direction in which its end nearer the bed slides; the drive is the way of that, mm.
         slide: Option<[KeyedNumber; 3]>,
         /// Direction of the shaft that carries its end nearer the bed, right-handed; the drive is the angle of that, degrees.
@@ -128,12 +125,6 @@ impl Builder<'_> {
             self.fault(CODE, file.at.span(), message, help);
             return None;
         }
-        let joints = axes[first..=last].iter().map(|axis| axis.joint);
-        if let (Some(belt), true) = (&file.belt, joints.clone().any(|joint| joint.rotary)) {
-            let message = format!("belt {name} leads over an axis that turns");
-            let help = "on = the last axis below the linear ones that share it";
-            self.fault(CODE, belt[0].span(), message, help);
-        }
         let drive = self.leg_drive(file, &name, span)?;
         let turns = matches!(drive, Drive::Crank { .. });
         let unit = if turns { 1f64.to_radians() } else { 1.0 };
@@ -143,7 +134,7 @@ impl Builder<'_> {
         Some(Leg {
             name,
             first,
-            joints: joints.collect(),
+            joints: axes[first..=last].iter().map(|axis| axis.joint).collect(),
             from: self.vector(&file.from),
             to: self.vector(&file.to),
             drive,
@@ -174,19 +165,8 @@ impl Builder<'_> {
     fn leg_drive(&mut self, file: &LegFile, name: &str, span: Range<usize>) -> Option<Drive> {
         let rod = self.checked(&file.rod);
         let ahead = file.side == LegSide::Ahead;
-        if let (Some(belt), None, None, None, None) =
-            (&file.belt, &file.slide, &file.shaft, &file.arm, rod)
-        {
-            let along: Vector3<f64> = self.vector(belt);
-            if along.norm() < 1e-6 {
-                let message = format!("belt {name} pulls in no direction");
-                self.fault(CODE, belt[0].span(), message, "belt = [1, 1, 0]");
-                return None;
-            }
-            return Some(Drive::Belt { along });
-        }
         match (&file.slide, &file.shaft, &file.arm, rod) {
-            (None, None, None, None) if file.belt.is_none() => Some(Drive::Strut),
+            (None, None, None, None) => Some(Drive::Strut),
             (Some(slide), None, None, Some(rod)) => {
                 let along = self.direction("the direction of a slide", slide)?;
                 Some(Drive::Slide { along, rod, ahead })
@@ -203,9 +183,8 @@ impl Builder<'_> {
                 Some(Drive::Crank { about, arm, rod, ahead })
             }
             _ => {
-                let message =
-                    format!("leg {name} is neither a strut, nor a belt, nor a slide, nor a crank");
-                let help = "a strut has none of belt, slide, shaft, arm and rod; a belt has belt alone; a slide has slide and rod; a crank has shaft, arm and rod";
+                let message = format!("leg {name} is neither a strut, nor a slide, nor a crank");
+                let help = "a strut has none of slide, shaft, arm and rod; a slide has slide and rod; a crank has shaft, arm and rod";
                 self.fault(CODE, span, message, help);
                 None
             }

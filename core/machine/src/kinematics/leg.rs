@@ -6,7 +6,6 @@
 //! `V` and the acceleration `A` of `P`, a rod of length `L` and `s = |w·e|` its part along the way `e` of its other end
 //!
 //! - of a strut: `|d''| <= A + V² / |P - from|`;
-//! - of a belt that pulls along `b`: `|d'| <= |b|·V`, `|d''| <= |b|·A`;
 //! - of a slide: `|d'| <= L·V / s`, `|d''| <= (L·A + (L·V / s)²) / s`;
 //! - of a crank of arm `a`, `s` being taken times the arm: `|d'| <= L·V / s`, `|d''| <= (L·A + (a·L·V / s)² + L·a·d'²) / s`.
 //!
@@ -39,11 +38,6 @@ const CLOSE: f64 = 1.002;
 pub enum Drive {
     /// The leg grows: its length, mm.
     Strut,
-    /// A belt or cable over pulleys that several linear axes share, as of a CoreXY: its way is a sum of theirs, mm.
-    Belt {
-        /// How far it goes for one mm of the platform's joint in each direction.
-        along: Vector3<f64>,
-    },
     /// A rod of fixed length, the other end of which slides along a line: the way of that end, mm.
     Slide {
         /// Unit vector along which it slides.
@@ -246,7 +240,6 @@ impl Leg {
         match self.drive {
             Drive::Formula { .. } => None,
             Drive::Strut => Some(arm.norm()),
-            Drive::Belt { along } => Some(along.dot(&arm)),
             Drive::Slide { along, rod, ahead } => {
                 let way = along.dot(&arm);
                 let square = rod * rod - (arm - along * way).norm_squared();
@@ -277,7 +270,6 @@ impl Leg {
         let (rod, way) = match self.drive {
             Drive::Formula { .. } => return None,
             Drive::Strut => return (point - self.from).try_normalize(1e-9),
-            Drive::Belt { along } => return Some(along),
             Drive::Slide { along, .. } => (point - self.from - along * value, along),
             Drive::Crank { about, arm, .. } => {
                 let (sine, cosine) = libm::sincos(value);
@@ -376,7 +368,6 @@ impl Leg {
                 let length = arm.norm() - at.radius;
                 [1.0, 1.0, if length > 0.0 { 1.0 / length } else { f64::INFINITY }]
             }
-            Drive::Belt { along } => [along.norm(), along.norm(), 0.0],
             Drive::Slide { along, rod, .. } => {
                 let across = (arm - along * along.dot(&arm)).norm() + at.radius;
                 let lead = root(rod * rod - across * across);
@@ -446,7 +437,7 @@ impl Leg {
         });
         let arm = at.centre - self.from;
         match self.drive {
-            Drive::Strut | Drive::Belt { .. } | Drive::Formula { .. } => false,
+            Drive::Strut | Drive::Formula { .. } => false,
             Drive::Slide { along, rod, .. } => {
                 (arm - along * along.dot(&arm)).norm() - at.radius > rod
                     || self.travel.is_some_and(|travel| {

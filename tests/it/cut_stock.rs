@@ -223,6 +223,56 @@ fn what_is_left_is_written_as_stl() {
     assert_contains(&said, &["no STL file is written"]);
 }
 
+/// Each line that cuts has its bounds: those of all of them hold what is cut, and steps of 6 mm are 6 mm deep.
+#[test]
+fn each_line_is_told_by_what_it_cuts() {
+    let (folder, said, clear) =
+        proven(&machine("cut = true", END_MILL), &program(""), &["--csv", "lines.csv"]);
+    assert!(clear, "{said}");
+    let text = fs::read_to_string(folder.path().join("lines.csv")).unwrap();
+    let mut lines = text.lines();
+    let head = "line,clear_by,cut_at_least,cut_at_most,depth_at_least,depth_at_most,width_at_least,width_at_most";
+    assert_eq!(lines.next(), Some(head));
+    let (mut sums, mut deepest) = ([0.0; 2], [0.0f64; 2]);
+    for line in lines {
+        let row: Vec<f64> = line.split(',').map(|word| word.parse().unwrap_or(0.0)).collect();
+        assert!(row[2] <= row[3] && row[4] <= row[5] && row[6] <= row[7] && row[7] <= 10.0);
+        sums = [sums[0] + row[2], sums[1] + row[3]];
+        // But for plunges, which have no width.
+        if row[7] > 0.0 {
+            deepest = [deepest[0].max(row[4]), deepest[1].max(row[5])];
+        }
+    }
+    // A pocket of 50 by 36 with corners of 5 mm.
+    let truth = 24.0 * (50.0 * 36.0 - (4.0 - std::f64::consts::PI) * 25.0);
+    assert!(sums[0] < truth && sums[1] > truth, "{sums:?} {truth}");
+    assert!(deepest[0] > 5.5 && deepest[0] < 6.001 && deepest[1] > 5.999, "{deepest:?}");
+}
+
+/// A cutter that stands cuts nothing, whether what it cuts would be taken from the stock or not.
+#[test]
+fn a_cutter_that_stands_is_told_in_any_stock() {
+    let program = program("").replace("S3000 M3\n", "M5\n");
+    for stock in ["", "cut = true"] {
+        let (_, said, clear) = proven(&machine(stock, END_MILL), &program, &[]);
+        assert!(!clear);
+        assert_contains(&said, &["fed into the stock while the spindle stands", "part.nc:11"]);
+    }
+}
+
+/// Five thousandths a peck: without a point Q counts so, which is told.
+#[test]
+fn pecks_in_least_increments_are_told() {
+    let hole = |peck: &str| program(&format!("G0 X30. Y22.\nG98 G83 Z-5. R2. {peck} F200.\nG80"));
+    let stock = machine("", END_MILL);
+    let (_, said, _) = proven(&stock, &hole("Q5"), &[]);
+    assert_contains(&said, &["warning[nc-peck]", "pecks of 0.0050 mm"]);
+    for peck in ["Q5.", "Q5000"] {
+        let (_, said, _) = proven(&stock, &hole(peck), &[]);
+        assert!(!said.contains("nc-peck"), "{said}");
+    }
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
     for (text, says) in [

@@ -12,7 +12,7 @@ use post_motion::path::turns;
 
 use crate::been::{goes_alone, lean};
 use crate::chip::Chip;
-use crate::field::{Around, Cutter, Field, Volume};
+use crate::field::{Around, Cutter, Field, Strays};
 use crate::profile::ToolPose;
 
 /// Pieces of a way that a body is looked at on; what is not proven then is not.
@@ -100,9 +100,10 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
         return field.cut_straight(cutter, poses, stray);
     }
     let pose = |joints: &Joints| tool.pose(joints);
-    let mut removed = Volume::default();
-    for stance in way.ends {
-        removed += field.remove(cutter, &pose(&stance.joints));
+    let mut taken = Chip::default();
+    let ends = way.ends.map(|stance| pose(&stance.joints));
+    for end in &ends {
+        taken += field.cut_standing(cutter, ends, end, None);
     }
     let step = field.cell().max();
     let mut waiting: Vec<Piece> = way.whole().into_iter().collect();
@@ -124,21 +125,18 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
             waiting.extend([last, first]);
             continue;
         }
-        let middle = pose(&at);
-        removed += field.remove(cutter, &middle);
-        if !fine {
-            lost = true;
-            continue;
-        }
+        let (ends, middle) = (piece.ends.each_ref().map(pose), pose(&at));
         let around = Around { pose: middle, by: reach, up: 0.0 };
-        removed += field.doubt_around(cutter, &around, before.as_ref(), None);
-        before = Some(around);
+        let strays = fine.then_some(Strays { around, before });
+        taken += field.cut_standing(cutter, ends, &middle, strays);
+        (lost, before) = (lost || !fine, Some(around).filter(|_| fine));
     }
     if lost {
-        removed.at_most = removed.at_most.max(field.volume().at_most);
+        taken.volume.at_most = taken.volume.at_most.max(field.volume().at_most);
+        taken.engagement = None;
         field.doubt_all();
     }
-    Chip { volume: removed, engagement: None }
+    taken
 }
 
 /// What is known of a body and a field on a way.

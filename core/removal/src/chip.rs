@@ -11,7 +11,7 @@ use crate::rays::{Grid, Stretch};
 pub struct Chip {
     /// How much.
     pub volume: Volume,
-    /// How far it goes into the stock; none where it takes nothing, or does not go straight.
+    /// How far it goes into the stock; none where it takes nothing, or that is not known.
     pub engagement: Option<Engagement>,
 }
 
@@ -24,7 +24,7 @@ pub struct Extent {
     pub at_most: f64,
 }
 
-/// How far a cut goes into the stock.
+/// How far a cut goes into the stock: as far as it does anywhere on its way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Engagement {
     /// Up from the tip along the tool axis.
@@ -59,58 +59,50 @@ impl std::ops::AddAssign for Chip {
 /// Where something is taken.
 #[derive(Clone, Copy)]
 struct Swath {
-    /// The highest of it along the tool axis, mm.
-    top: f64,
+    /// How far up from the tip along the tool axis, mm.
+    depth: f64,
     /// Least and most of it across, mm.
     sides: [f64; 2],
 }
 
 impl Swath {
     const NOTHING: Self =
-        Self { top: f64::NEG_INFINITY, sides: [f64::INFINITY, f64::NEG_INFINITY] };
-
-    /// Takes a box, from corner to corner, mm.
-    fn take(
-        &mut self,
-        axis: Vector3<f64>,
-        across: Option<Vector3<f64>>,
-        [low, high]: &[Vector3<f64>; 2],
-    ) {
-        let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
-        let range = |along: Vector3<f64>| {
-            let (at, far) = (along.dot(&middle), along.abs().dot(&half));
-            [at - far, at + far]
-        };
-        self.top = self.top.max(range(axis)[1]);
-        if let Some(across) = across {
-            let [least, most] = range(across);
-            self.sides = [self.sides[0].min(least), self.sides[1].max(most)];
-        }
-    }
+        Self { depth: f64::NEG_INFINITY, sides: [f64::INFINITY, f64::NEG_INFINITY] };
 
     fn width(&self) -> f64 {
         (self.sides[1] - self.sides[0]).max(0.0)
     }
 }
 
-/// Measures what is taken on a straight way.
+/// Measures what is taken on a way.
 pub(crate) struct Gauge {
+    /// The tool axis where the tool stands, and the lowest and the highest that its tip is along it, mm.
     axis: Vector3<f64>,
-    across: Option<Vector3<f64>>,
-    /// The lowest and the highest that the tip is along the axis, mm.
     tips: [f64; 2],
+    /// Across the way and the tool axis.
+    across: Option<Vector3<f64>>,
+    /// No point of the tool is farther from where it stands, mm.
+    by: f64,
     /// What certainly is taken, and what may be.
     certain: Swath,
     possible: Swath,
 }
 
 impl Gauge {
+    /// On a way from one pose to another, or a piece of one: until it is told where the tool stands, this is anywhere between
+    /// them, and its axis that of both.
     pub fn new([from, to]: [ToolPose; 2]) -> Self {
-        let axis = from.axis;
-        let across = axis.cross(&(to.tip - from.tip)).try_normalize(1e-6);
-        let [one, other] = [from, to].map(|pose| axis.dot(&pose.tip));
+        let across = from.axis.cross(&(to.tip - from.tip)).try_normalize(1e-6);
+        let [one, other] = [from, to].map(|pose| from.axis.dot(&pose.tip));
         let tips = [one.min(other), one.max(other)];
-        Self { axis, across, tips, certain: Swath::NOTHING, possible: Swath::NOTHING }
+        let (certain, possible) = (Swath::NOTHING, Swath::NOTHING);
+        Self { axis: from.axis, tips, across, by: 0.0, certain, possible }
+    }
+
+    /// The tool stands at a pose, no point of it farther from there than `by`, mm.
+    pub fn stand(&mut self, pose: &ToolPose, by: f64) {
+        let tip = pose.axis.dot(&pose.tip);
+        (self.axis, self.tips, self.by) = (pose.axis, [tip - by, tip + by], by);
     }
 
     /// Stretches of a prism along Z that are taken for certain.
@@ -120,9 +112,12 @@ impl Gauge {
         place: [usize; 2],
         stretches: impl Iterator<Item = Stretch>,
     ) {
-        stretches.for_each(|stretch| {
-            self.certain.take(self.axis, self.across, &grid.block(place, stretch))
-        });
+        for stretch in stretches {
+            let (top, sides) = self.extents(&grid.block(place, stretch));
+            let Swath { depth, sides: known } = &mut self.certain;
+            *depth = depth.max(top - self.tips[1]);
+            *known = [known[0].min(sides[0]), known[1].max(sides[1])];
+        }
     }
 
     /// Stretches of which some may be taken.
@@ -132,23 +127,36 @@ impl Gauge {
         place: [usize; 2],
         stretches: impl Iterator<Item = Stretch>,
     ) {
-        stretches.for_each(|stretch| {
-            self.possible.take(self.axis, self.across, &grid.block(place, stretch))
-        });
+        for stretch in stretches {
+            let (top, sides) = self.extents(&grid.block(place, stretch));
+            let Swath { depth, sides: known } = &mut self.possible;
+            *depth = depth.max(top - self.tips[0]);
+            *known = [known[0].min(sides[0]), known[1].max(sides[1])];
+        }
+    }
+
+    /// The top of a box along the tool axis, and its sides across, mm.
+    fn extents(&self, [low, high]: &[Vector3<f64>; 2]) -> (f64, [f64; 2]) {
+        let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
+        let range = |along: Vector3<f64>| {
+            let (at, far) = (along.dot(&middle), along.abs().dot(&half));
+            [at - far, at + far]
+        };
+        (range(self.axis)[1], self.across.map_or([0.0; 2], range))
     }
 
     /// What came of it, of a tool of these frusta.
     pub fn engagement(&self, tool: &[Frustum]) -> Option<Engagement> {
-        let Self { certain, possible, tips, .. } = self;
+        let Self { certain, possible, .. } = self;
         let most = |end: fn(&Frustum) -> f64| tool.iter().map(end).fold(0.0, f64::max);
-        let long = most(|frustum| frustum.z[1]) + tips[1] - tips[0];
-        let wide = 2.0 * most(|frustum| frustum.r[0].max(frustum.r[1]));
+        let long = most(|frustum| frustum.z[1]) + self.tips[1] - self.tips[0];
+        let wide = 2.0 * (most(|frustum| frustum.r[0].max(frustum.r[1])) + self.by);
         let extent = |at_least: f64, at_most: f64| {
             let at_most = at_most.max(0.0);
             Extent { at_least: at_least.max(0.0).min(at_most), at_most }
         };
-        possible.top.is_finite().then(|| Engagement {
-            depth: extent(certain.top - tips[1], (possible.top - tips[0]).min(long)),
+        possible.depth.is_finite().then(|| Engagement {
+            depth: extent(certain.depth, possible.depth.min(long)),
             width: self.across.map(|_| extent(certain.width(), possible.width().min(wide))),
         })
     }

@@ -139,11 +139,21 @@ impl Field {
 
     /// Takes away what a cutter certainly removes where it stands; what was left there.
     pub fn remove(&mut self, cutter: &Cutter, pose: &ToolPose) -> Volume {
+        self.remove_at(cutter, pose, None)
+    }
+
+    /// The same, with what is taken measured.
+    pub(crate) fn remove_at(
+        &mut self,
+        cutter: &Cutter,
+        pose: &ToolPose,
+        mut gauge: Option<&mut Gauge>,
+    ) -> Volume {
         let mut removed = Volume::default();
         for run in &cutter.inner {
             let extents = run.extents(pose);
             let line = |point, axis| run.inside(&Line::new(pose, point, axis));
-            removed += self.carve(&extents, &line, None);
+            removed += self.carve(&extents, &line, gauge.as_deref_mut());
         }
         removed
     }
@@ -169,6 +179,25 @@ impl Field {
             let around = slides.map_or(aside, |(pose, up)| Around { pose, by: stray, up });
             volume += self.doubt_around(cutter, &around, before.as_ref(), Some(&mut gauge));
             before = Some(around);
+        }
+        Chip { volume, engagement: gauge.engagement(&cutter.outer) }
+    }
+
+    /// A cutter stands on its way between two poses: what it certainly removes there is taken away. Where it is said how
+    /// far it strays, nothing of that is left for certain any more.
+    pub(crate) fn cut_standing(
+        &mut self,
+        cutter: &Cutter,
+        ends: [ToolPose; 2],
+        pose: &ToolPose,
+        strays: Option<Strays>,
+    ) -> Chip {
+        let mut gauge = Gauge::new(ends);
+        gauge.stand(pose, 0.0);
+        let mut volume = self.remove_at(cutter, pose, Some(&mut gauge));
+        if let Some(Strays { around, before }) = strays {
+            gauge.stand(pose, around.by);
+            volume += self.doubt_around(cutter, &around, before.as_ref(), Some(&mut gauge));
         }
         Chip { volume, engagement: gauge.engagement(&cutter.outer) }
     }
@@ -327,6 +356,14 @@ pub(crate) struct Around {
     pub pose: ToolPose,
     pub by: f64,
     pub up: f64,
+}
+
+/// How far a cutter strays from a place of its way.
+#[derive(Clone, Copy)]
+pub(crate) struct Strays {
+    pub around: Around,
+    /// Around the place before, where what was left is counted already.
+    pub before: Option<Around>,
 }
 
 impl Around {

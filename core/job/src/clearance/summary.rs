@@ -72,11 +72,11 @@ pub struct CutSummary {
     pub tool: u32,
     /// How much of the stock it takes, mm³: no less and no more than this.
     pub volume_mm3: [f64; 2],
-    /// How deep its deepest straight cut is, mm up from the tip.
+    /// How deep its deepest cut is, mm up from the tip.
     pub depth_mm: Option<[f64; 2]>,
     /// Where it may be deepest, a line of the program.
     pub depth_line: Option<u64>,
-    /// How wide its widest straight cut is, mm across way and tool axis.
+    /// How wide its widest cut is, mm across way and tool axis.
     pub width_mm: Option<[f64; 2]>,
     /// Where it may be widest.
     pub width_line: Option<u64>,

@@ -21,7 +21,7 @@ pub struct MostAt {
     pub line: u64,
 }
 
-/// What a tool takes of the stock, and how far its straight cuts go into it.
+/// What a tool takes of the stock, and how far its cuts go into it.
 #[derive(Clone, Copy, Debug)]
 pub struct ToolCut {
     /// Its number.

@@ -57,6 +57,13 @@ impl Cloud {
         best.1
     }
 
+    /// The same, which is likely to be `guess`, one of them.
+    pub(crate) fn farthest_or(&self, along: Vector3<f64>, guess: Vector3<f64>) -> Vector3<f64> {
+        let mut best = (along.dot(&guess), guess);
+        self.look(0, along, along.abs(), &mut best);
+        best.1
+    }
+
     fn look(
         &self,
         place: usize,

@@ -1,6 +1,7 @@
 //! A mesh: its parts that hang together, which of them are closed, and which are convex.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasher, Hash, Hasher, RandomState};
 
 use nalgebra::Vector3;
 
@@ -49,14 +50,6 @@ struct Edge {
     /// The triangle goes along it from the greater to the lesser.
     against: bool,
     triangle: u32,
-}
-
-impl Edge {
-    /// Edges of the same corners follow one another.
-    fn key(&self) -> u128 {
-        let [one, other] = self.ends.map(u128::from);
-        one << 96 | other << 64 | u128::from(self.triangle) << 1 | u128::from(self.against)
-    }
 }
 
 /// What is seen of a part at its edges.
@@ -109,12 +102,59 @@ pub(crate) fn parts(triangles: &[[Vector3<f64>; 3]]) -> (Vec<Part>, MeshFaults) 
     (parts, faults)
 }
 
+/// A corner, bit by bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Key([u64; 3]);
+
+impl Hash for Key {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.0.iter().for_each(|bits| state.write_u64(*bits));
+    }
+}
+
+/// Mixes words by a secret: nobody can make a file whose corners all fall together.
+#[derive(Clone, Copy, Debug)]
+struct Mixing {
+    secret: u64,
+    state: u64,
+}
+
+impl Mixing {
+    fn any() -> Self {
+        let secret = RandomState::new().hash_one(0) | 1;
+        Self { secret, state: secret }
+    }
+}
+
+impl BuildHasher for Mixing {
+    type Hasher = Self;
+
+    fn build_hasher(&self) -> Self {
+        *self
+    }
+}
+
+impl Hasher for Mixing {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u64(u64::from(*byte)));
+    }
+
+    fn write_u64(&mut self, word: u64) {
+        let product = u128::from(self.state ^ word) * u128::from(self.secret);
+        self.state = product as u64 ^ (product >> 64) as u64;
+    }
+
+    fn finish(&self) -> u64 {
+        self.state
+    }
+}
+
 /// A number for each corner of each triangle: the same for corners that are in the same place.
 fn corners(triangles: &[[Vector3<f64>; 3]]) -> Vec<u32> {
     let all = triangles.as_flattened();
-    let mut first = HashMap::with_capacity(all.len() / 4);
+    let mut first = HashMap::with_capacity_and_hasher(all.len() / 4, Mixing::any());
     let number = |(place, corner): (usize, &Vector3<f64>)| {
-        let key = [corner.x, corner.y, corner.z].map(|value| (value + 0.0).to_bits());
+        let key = Key([corner.x, corner.y, corner.z].map(|value| (value + 0.0).to_bits()));
         *first.entry(key).or_insert(place as u32)
     };
     all.iter().enumerate().map(number).collect()
@@ -143,7 +183,7 @@ fn edges(
             edges.push(Edge { ends, against: from > to, triangle: triangle as u32 });
         }
     }
-    edges.sort_unstable_by_key(Edge::key);
+    let edges = in_order(&edges, corners.len());
     let mut faults = MeshFaults::default();
     for same in edges.chunk_by(|one, other| one.ends == other.ends) {
         let seen = &mut seen[part_of[same[0].triangle as usize]];
@@ -160,6 +200,29 @@ fn edges(
         seen.closed = false;
     }
     faults
+}
+
+/// Edges of the same corners follow one another, in the order of their triangles: they are counted by their lesser corner, of
+/// which each has few.
+fn in_order(edges: &[Edge], corners: usize) -> Vec<Edge> {
+    let mut starts = vec![0; corners + 1];
+    for edge in edges {
+        starts[edge.ends[0] as usize + 1] += 1;
+    }
+    for corner in 0..corners {
+        starts[corner + 1] += starts[corner];
+    }
+    let mut next = starts.clone();
+    let mut ordered = edges.to_vec();
+    for edge in edges {
+        let place = &mut next[edge.ends[0] as usize];
+        ordered[*place] = *edge;
+        *place += 1;
+    }
+    for ends in starts.windows(2) {
+        ordered[ends[0]..ends[1]].sort_by_key(|edge| edge.ends[1]);
+    }
+    ordered
 }
 
 /// How high two triangles that share an edge stand over one another, mm: the farthest corner of the smaller over the plane of

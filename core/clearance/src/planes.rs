@@ -18,11 +18,13 @@ pub(crate) struct Planes {
     far: f64,
     /// How far they are apart along it where this was asked for last, mm.
     last: Option<(Joints, f64)>,
+    /// The point of the one that moves that was nearest then, frame of its link.
+    nearest: Option<Vector3<f64>>,
 }
 
 impl Planes {
     pub(crate) fn new(along: Vector3<f64>, stands: &Shape) -> Self {
-        Self { along, far: along.dot(&stands.support(along)), last: None }
+        Self { along, far: along.dot(&stands.support(along)), last: None, nearest: None }
     }
 
     /// Unit vector towards the body that moves, frame of the other.
@@ -37,7 +39,9 @@ impl Planes {
         }
         let at = view.placement(joints);
         let beside = at.rotation.tr_mul(&self.along);
-        let near = self.along.dot(&at.shift) + beside.dot(&moves.support(-beside));
+        let nearest = moves.support_or(-beside, self.nearest);
+        let near = self.along.dot(&at.shift) + beside.dot(&nearest);
+        self.nearest = Some(nearest);
         let gap = near - self.far - ALLOWANCE;
         // What is no number proves nothing.
         let gap = if gap.is_finite() { gap } else { f64::NEG_INFINITY };

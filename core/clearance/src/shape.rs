@@ -121,6 +121,18 @@ impl Shape {
         &self.pieces
     }
 
+    /// The farthest of it along `along`, which is likely to be `guess` if that was it along another direction.
+    pub(crate) fn support_or(
+        &self,
+        along: Vector3<f64>,
+        guess: Option<Vector3<f64>>,
+    ) -> Vector3<f64> {
+        match (&self.cloud, guess) {
+            (Some(cloud), Some(guess)) => cloud.farthest_or(along, guess),
+            _ => self.support(along),
+        }
+    }
+
     /// What is wrong with its mesh.
     pub fn faults(&self) -> MeshFaults {
         self.faults

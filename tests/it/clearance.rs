@@ -462,6 +462,11 @@ fn check_tells_all_that_clearance_refuses() {
         assert_contains(&run.err, &["warning[clearance-body]", says]);
         assert_eq!(run.code, 0, "{}", run.err);
     }
+    let text =
+        format!("extends = \"vmc\"\nname = \"a\"\n[stock]\n{block}cut = true\nresolution = 99\n");
+    fs::write(folder.path().join("m.toml"), text).unwrap();
+    let run = post_in(folder.path(), &["check", "m.toml"]);
+    assert_contains(&run.err, &["[stock] resolution is 99 mm, and the stock 40 mm thick"]);
     // And that ways would go through a part that is not drawn.
     fs::write(
         folder.path().join("m.toml"),

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use post_clearance::proof::{Body, BodyKind, Proof, Rules};
 use post_machine::description::{GivenShape, Machine};
-use post_machine::diagnostic::{Diagnostic, Severity};
+use post_machine::diagnostic::{Diagnostic, Severity, Short};
 use post_machine::kinematics::{Joint, Joints};
 use post_readback::course::cl::ClSettings;
 use post_readback::{MOST_FAULTS, ProgramRun};
@@ -258,6 +258,7 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
         findings.push(Diagnostic::warning("clearance-body", message).help(help));
     }
     findings.extend(outlines::of_tools(machine));
+    findings.extend(coarse_cells(machine));
     if machine.stock.is_some()
         && !cuts_stock(machine)
         && machine.outlines.iter().any(|outline| !outline.cutter.is_empty())
@@ -282,6 +283,22 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
         }
     }
     findings
+}
+
+/// Cells that are larger than the stock is thick tell nothing of what is left of it.
+fn coarse_cells(machine: &Machine) -> Option<Diagnostic> {
+    let stock = machine.stock.as_ref()?;
+    let resolution = stock.cut.as_ref()?.resolution?;
+    let [low, high] = stock.extents()?;
+    let thin = low.iter().zip(high).map(|(low, high)| high - low).fold(f64::INFINITY, f64::min);
+    (resolution > thin).then(|| {
+        let (resolution, thin) = (Short(resolution), Short(thin));
+        let message = format!(
+            "[stock] resolution is {resolution} mm, and the stock {thin} mm thick: what is cut of it is not known"
+        );
+        let help = "a tenth of the smallest cutter, or leave it out: it follows from the size";
+        Diagnostic::warning("clearance-body", message).at(stock.place.clone()).help(help)
+    })
 }
 
 /// The proof for the bodies of a machine.

@@ -55,7 +55,7 @@ fn the_tool_is_retracted_between_operations_on_two_sides() {
         assert!(!second[..turn].contains("M5\n") && !second[..turn].contains("M9\n"), "{text}");
         // No farther apart than faces are: the way of the CAM system, if that turns the tool at all.
         let near = SIDES.replace("GOTO/0,-100,10,0,-1,0", "GOTO/0,-100,10,0,-0.5,0.8660254");
-        let turns = near.replace("GOTO/0,30,20\n", "GOTO/0,30,20,0,0.1,0.9949874\n");
+        let turns = near.replace("GOTO/0,30,20\n", "GOTO/0,30,20,0,-0.1,0.9949874\n");
         for (cl, retracted) in [(near, true), (turns, false)] {
             let (run, text) = posted(&cl, &job);
             assert_eq!(run.code, 0, "{tcp}: {}", run.err);

@@ -90,7 +90,7 @@ impl Builder<'_> {
             (None, None) if self.without.contains(name) => None,
             (None, None) => {
                 let message = format!(
-                    "`{text}`: {name} is neither an axis nor a formula nor a parameter; {}",
+                    "`{text}`: {name} is neither an axis nor a parameter; {}",
                     axes_are(axes)
                 );
                 self.fault(code, keep.span(), message, "");

@@ -336,6 +336,12 @@ fn plain(value: f64) -> String {
 fn too_fast(asked: f64, written: &WrittenFeed) -> Diagnostic {
     let least = written.feed.value();
     let factor = least / asked;
+    if factor.is_infinite() {
+        let message = "no feed is proven to be slow enough on this way: beside it a drive has no largest speed (a rod stands across its way, or a formula jumps or has no rate)";
+        return Diagnostic::error("low-feed", message).help(
+            "another set-up of the part (--mount), or a travel of the drive that ends before that place",
+        );
+    }
     Diagnostic::error(
         "low-feed",
         format!(

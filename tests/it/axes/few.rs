@@ -92,3 +92,50 @@ fn a_winder_reaches_its_mandrel_and_no_chord_of_it() {
     let said = run(WINDER, &wind(30.0), "0");
     assert!(said.code == 1 && said.err.contains("misses it by 1.02"), "{}", said.err);
 }
+
+/// A vertical lathe with a head that swivels and no Y.
+const SWIVEL: &str = "name = \"vertical lathe\"\nchain = \"[w C' b X Z B (S) t]\"\n\
+    [tool]\ngauge = [0, 0, 800]\n\
+    [axis.C]\nrotary = [0, 0, 1]\npoint = [0, 0, 0]\ncyclic = true\nmax_feed = 7200\n\
+    [axis.X]\nlinear = [1, 0, 0]\ntravel = [-1500, 1500]\nmax_feed = 20000\n\
+    [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-1500, 1500]\nmax_feed = 20000\n\
+    [axis.B]\nrotary = [0, 1, 0]\npoint = [0, 0, 1050]\ntravel = [-100, 20]\nmax_feed = 7200\n\
+    [control]\ndialect = \"fanuc\"\ntcp = \"post\"\nleave = { distance = 50, then = { Z = \"max\" } }\n\
+    [accuracy]\ntolerance = 0.01\naxis_tolerance = 0.05\n";
+
+/// Points that the machine's own axes reach, C by a degree from one to the next: between them the tip is brought into the
+/// plane of X and Z, and the tool axis leans by as much.
+#[test]
+fn points_of_a_vertical_lathes_own_axes_are_posted() {
+    let model = Model::from_table(SWIVEL.parse().unwrap(), None);
+    let (rounds, mut rng) = post_testkit::randomised(6, 31);
+    for _ in rounds {
+        let [tilt, drift] = [rng.range(20.0, 70.0), rng.range(-0.4, 0.4)];
+        let sense = if rng.range(-1.0, 1.0) < 0.0 { -1.0 } else { 1.0 };
+        let (radius, away) = (rng.range(60.0, 250.0), rng.range(-1.5, 1.5));
+        let start = rng.range(-180.0, 180.0);
+        let points: Vec<Pose> = (0..60)
+            .map(|step| {
+                let step = f64::from(step);
+                let b = -(tilt + drift * step);
+                // The tip of a tool of 150 mm swings about a line 400 mm above it.
+                let x = radius + away * step + 400.0 * libm::sin(b.to_radians());
+                model.reach(&[start + sense * step, x, -300.0 + 0.5 * step, b], 150.0)
+            })
+            .collect();
+        let first = &points[0];
+        let mut text = cl().rapid(first.tip + first.axis * 30.0, first.axis);
+        for point in &points {
+            text = text.cut(point.tip, point.axis);
+        }
+        let made = run(SWIVEL, &text.end(), "150");
+        assert_eq!(made.code, 0, "{}", made.err);
+        let reached = tips(SWIVEL, &made.out, &["C", "X", "Z", "B"], 150.0);
+        for (place, point) in points.iter().enumerate() {
+            let hit = |pose: &Pose| {
+                (pose.tip - point.tip).norm() < 0.011 && angle(pose.axis, point.axis) < 0.051
+            };
+            assert!(reached.iter().any(hit), "{place}\n{}", made.out);
+        }
+    }
+}

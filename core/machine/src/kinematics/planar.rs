@@ -19,6 +19,10 @@ use super::orientation::{Orientation, RotarySet, angle};
 /// The carrier points the tool no farther off than this share of what the tool axis may miss, if it is to place the tip.
 const POINTS: f64 = 0.25;
 
+/// The carrier turns the tool off by no more than this share of what the tool axis may miss, if it is to bring the tip in:
+/// the words are rounded too.
+const LEANS: f64 = 0.9;
+
 /// Closer to where its ways meet than this share of what the tip may miss, mm of mm, the carrier stands as it stood.
 const MEETS: f64 = 0.1;
 
@@ -148,7 +152,7 @@ impl Planar {
                 Some(carrier) => {
                     self.carried(chain, pose, &mut set.joints, (carrier, last), allowed)
                 }
-                None => Ok(vec![PlanarSolution { joints: set.joints, side: None }]),
+                None => Ok(vec![self.pointing(chain, pose, set.joints, last, allowed)]),
             };
             let placed = ways.map(|ways| {
                 for mut way in ways {
@@ -168,6 +172,43 @@ impl Planar {
             }
         }
         if found.is_empty() { Err(fault) } else { Ok(found) }
+    }
+
+    /// The axes where they point the tool as in `joints`. Between two points that the chain reaches the tip lies beside the
+    /// plane then: where the tool axis may be off by as much, the carrier brings it in by the shorter turn.
+    fn pointing(
+        &self,
+        chain: &Chain,
+        pose: &Pose,
+        joints: Joints,
+        last: &Joints,
+        allowed: AllowedMiss,
+    ) -> PlanarSolution {
+        let plain = PlanarSolution { joints, side: None };
+        let placed = |mut joints: Joints| {
+            numeric::approach(chain, &self.linear, pose.tip, &mut joints);
+            chain.forward(&joints)
+        };
+        let beside = (placed(joints).tip - pose.tip).norm();
+        let Some(carrier) = self.carrier.filter(|_| beside > POLE.max(MEETS * allowed.tip)) else {
+            return plain;
+        };
+        let mut pointed = joints;
+        let ways = self.carried(chain, pose, &mut pointed, (carrier, last), allowed);
+        let turn = |way: &PlanarSolution| {
+            libm::fabs(libm::remainder(way.joints[carrier] - joints[carrier], TAU))
+        };
+        let nearest =
+            ways.unwrap_or_default().into_iter().min_by(|a, b| turn(a).total_cmp(&turn(b)));
+        let within = |way: &PlanarSolution| {
+            let reached = placed(way.joints);
+            angle(reached.axis, pose.axis) < LEANS * allowed.axis
+                && (reached.tip - pose.tip).norm() < beside
+        };
+        match nearest {
+            Some(way) if within(&way) => PlanarSolution { side: None, ..way },
+            _ => plain,
+        }
     }
 
     /// The ways to bring the tip into the plane by the carrier, the others standing as in `joints`.

@@ -64,10 +64,19 @@ fn apart(at: V, path: &[V]) -> f64 {
     path.windows(2).map(of).fold(f64::INFINITY, f64::min)
 }
 
+/// A line without the number of its block.
+fn unnumbered(line: &str) -> &str {
+    match line.split_once(' ') {
+        Some((first, rest)) if first.starts_with('N') => rest,
+        _ => line,
+    }
+}
+
 /// The lines between those that begin and end the mode, the words of C as degrees; `length`: they are lengths on that radius.
 fn unwrapped(program: &str, on: &str, off: &str, letter: &str, length: Option<f64>) -> String {
     let mut inside = false;
     let lines = program.lines().map(|line| {
+        let line = unnumbered(line);
         if line == on || line == off {
             inside = line == on;
             return String::new();
@@ -133,7 +142,7 @@ fn between_the_words_the_tool_keeps_to_the_chords_and_the_feed_is_that_of_the_ma
         assert_ne!(&plain, program, "{on}\n{program}");
         let stands = blocks(&plain, &names, &[]);
         let wanted: Vec<V> = path.iter().map(|place| at(*place)).collect();
-        let begins = program.lines().position(|line| line.trim_end() == on).unwrap();
+        let begins = program.lines().position(|line| unnumbered(line) == on).unwrap();
         let depth = |block: &post_testruns::read_back::Block| {
             model.pose(&block.words, LENGTH).tip.xy().norm()
         };

@@ -182,7 +182,7 @@ impl FaceTracker {
         let pole = face.and_then(|(_, face)| face.face.as_ref()).map_or(0.0, |mode| mode.pole);
         let names = [face, machine.in_wrap()];
         let names = names.map(|mode| mode.map_or(String::new(), |(name, _)| name.to_owned()));
-        machine.has_modes().then(|| Self { ahead, next: 0, names, pole, on: false })
+        machine.has_modes().then_some(Self { ahead, next: 0, names, pole, on: false })
     }
 
     /// The mode is on.

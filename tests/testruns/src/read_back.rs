@@ -40,7 +40,7 @@ pub struct Axis {
     pub step: Option<f64>,
     /// A quill: how its way is divided is the command's affair.
     quill: bool,
-    /// What its word multiplies it by: 2 of a diameter.
+    /// What its word multiplies it by: 2 of a diameter, of a machine of the library.
     factor: f64,
 }
 
@@ -118,7 +118,10 @@ impl Numbers<'_> {
 impl Model {
     /// A machine of the library, with `head` if it has more than one.
     pub fn new(machine: &str, head: Option<&str>) -> Self {
-        Self::from_table(table(machine), head)
+        let table = table(machine);
+        let mut model = Self::from_table(table.clone(), head);
+        model.axes.iter_mut().for_each(|axis| axis.factor = factor(&table, &axis.name));
+        model
     }
 
     pub fn from_table(mut table: Table, head: Option<&str>) -> Self {
@@ -159,7 +162,7 @@ impl Model {
                     positions: get("positions").map(|list| numbers.list(list)),
                     step: get("step").map(|step| numbers.number(step)),
                     quill: get("share").is_some() || flag("reserve"),
-                    factor: factor(&table, name),
+                    factor: 1.0,
                 }
             })
             .collect();

@@ -183,7 +183,13 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
     fn motion(&mut self, motion: &Motion) {
         self.change_tool(motion);
         self.found.motions += 1;
-        if !self.turns_part && matches!(motion.state.spindle, SpindleState::Surface { .. }) {
+        let machine = &self.control.machine;
+        // Without a rotary axis there is no other spindle than that of the part.
+        let lathe =
+            machine.spindle.surface_speed && machine.axes.iter().all(|axis| !axis.joint.rotary);
+        let spindle = motion.state.spindle;
+        let kept = matches!(spindle, SpindleState::Surface { .. });
+        if !self.turns_part && (kept || lathe && spindle.rpm().is_some()) {
             self.turns_part = true;
             let message = "the spindle turns the part: what is clamped is looked at as it stands, and nothing is proven of how it turns".to_owned();
             self.faults.push((motion.line, message, "programs that turn are looked at by eye; mill what turns with a machine file of its own"));

@@ -21,6 +21,9 @@ use crate::wrap_mode::WrapMode;
 /// Least distance of the tip from the line of the turning axis, if the file does not say, mm.
 const POLE: f64 = 1.0;
 
+/// Steps of a diameter that is printed in one unit of the program.
+const PRINTED: f64 = 1e5;
+
 /// Directions whose cosine is one but for so much are one.
 const ALONG: f64 = 1e-9;
 
@@ -139,12 +142,19 @@ impl Builder<'_> {
         let wrap = file.wrap.as_ref()?;
         let span = wrap.span();
         let said = wrap.get_ref();
-        let radius = self.checked(&Some(said.radius.clone()))?;
+        let unit = unit_length(machine.control.units);
+        // The control is told of the cylinder that lengths are counted on.
+        let diameter = 2.0 * self.checked(&Some(said.radius.clone()))? / unit;
+        let diameter = libm::rint(diameter * PRINTED) / PRINTED;
+        let radius = diameter / 2.0 * unit;
         let filled = |lines: Vec<String>| {
-            let radius = radius / unit_length(machine.control.units);
+            let text = |value: f64| {
+                let text = format!("{value:.6}");
+                text.trim_end_matches('0').trim_end_matches('.').to_owned()
+            };
             let fill = |line: String| {
-                let line = line.replace("{r}", &Short(radius).to_string());
-                line.replace("{d}", &Short(2.0 * radius).to_string())
+                let line = line.replace("{r}", &text(diameter / 2.0));
+                line.replace("{d}", &text(diameter))
             };
             lines.into_iter().map(fill).collect::<Vec<_>>()
         };

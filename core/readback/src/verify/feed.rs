@@ -9,6 +9,9 @@ use super::track::Element;
 use crate::course::Course;
 use crate::{Interpolation, Motion, MotionKind};
 
+/// No printed feed is less than a tenth of what it should be by its last place.
+const MOST_ROUNDED: f64 = 0.9;
+
 /// Rounding of the ends of a way, mm.
 const ROUNDED: f64 = 0.003;
 
@@ -161,7 +164,7 @@ impl<C: Course> Verifier<'_, C> {
                 .map(|way| way * way)
                 .sum();
             // Rounded down, so that it is never above what is asked.
-            rounded += 2.0 * PLACE * motion.minutes / square.sqrt().max(1e-6);
+            rounded += (2.0 * PLACE * motion.minutes / square.sqrt().max(1e-6)).min(MOST_ROUNDED);
             // Where rotary axes turn the tip goes another way than the points that its time was counted by, within the
             // tolerance.
             let turned = |joint: usize| motion.to.joints[joint] != motion.from.joints[joint];

@@ -169,6 +169,7 @@ impl Observer for Blocks {
             nodes: &[*cut.from, *cut.to],
             tolerances: cut.tolerances,
             control_keeps_tip: cut.control_keeps_tip,
+            straight: cut.straight,
             balances: true,
         };
         if self.linearise.split(&run, &mut self.model).is_ok() {
@@ -206,6 +207,7 @@ fn certification(case: &Case) -> Result<(), Box<dyn Error>> {
         to: &nodes[index][1],
         tolerances,
         control_keeps_tip: false,
+        straight: None,
     };
     let (mut inverse, mut certificate) = (Vec::new(), Vec::new());
     for _ in 0..5 {

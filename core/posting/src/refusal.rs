@@ -5,7 +5,9 @@ use crate::program::{MoveFeed, StraightMove};
 use post_machine::axis_words;
 use post_machine::axis_words::AxisWords;
 use post_machine::dependent_limit::DependentLimit;
-use post_machine::description::{Axis, LengthAxis, Machine, Positions, Tcp, TextPlace};
+use post_machine::description::{
+    Axis, LengthAxis, Machine, Method, Moves, Positions, Tcp, TextPlace,
+};
 use post_machine::diagnostic::{Diagnostic, LimitExcess, Short};
 use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::travel::passed;
@@ -435,6 +437,33 @@ pub(crate) fn no_signed_way(machine: &Machine, writes: Capabilities) -> Option<D
         Diagnostic::error("dialect", message)
             .help("way = \"counted\", or \"shorter\" where the control takes the shorter way")
     })
+}
+
+/// Cuts are to be led straight, and the dialect has no words for that or the machine is none whose tool a control would turn
+/// evenly.
+pub(crate) fn no_poses(machine: &Machine, writes: Capabilities, plans: bool) -> Option<Diagnostic> {
+    if machine.control.moves != Moves::Straight {
+        return None;
+    }
+    let name = &machine.name;
+    let arm = machine.solver(0.0).is_ok_and(|solver| solver.spins());
+    let message = if !writes.has(Capabilities::POSES) {
+        let dialect = &machine.control.dialect;
+        format!("[control] moves of {name}: the dialect {dialect} has no poses of a tool")
+    } else if !arm || machine.axes.len() != 6 || machine.axes.iter().any(|axis| axis.carries_part) {
+        format!(
+            "[control] moves of {name}: an arm of six axes alone is led straight, whose tool turns about itself freely"
+        )
+    } else if machine.word_map.is_some() || machine.in_face().is_some() {
+        format!("[control] moves of {name}: words that are no axis values do not go with poses")
+    } else if plans || machine.accuracy.method == Method::Compensate {
+        format!(
+            "[control] moves of {name}: a planned feed and [accuracy] method = \"compensate\" know how axes go, and not how a control leads a tool"
+        )
+    } else {
+        return None;
+    };
+    Some(Diagnostic::error("dialect", message).help("moves = \"joints\" leads all joints evenly"))
 }
 
 /// The machine file asks the control to smooth, and the dialect has no words for it.

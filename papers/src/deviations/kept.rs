@@ -25,6 +25,7 @@ pub struct KeptMove {
     to: PathNode,
     tolerances: MoveTolerances,
     control_keeps_tip: bool,
+    straight: Option<f64>,
 }
 
 /// The deviation over a piece of a move.
@@ -63,6 +64,7 @@ impl Observer for Keeper {
                 to: *cut.to,
                 tolerances: cut.tolerances,
                 control_keeps_tip: cut.control_keeps_tip,
+                straight: cut.straight,
             });
         }
     }
@@ -76,6 +78,7 @@ impl KeptMove {
             to: &self.to,
             tolerances: self.tolerances,
             control_keeps_tip: self.control_keeps_tip,
+            straight: self.straight,
         }
     }
 

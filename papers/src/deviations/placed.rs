@@ -54,6 +54,7 @@ pub(super) fn split(
         nodes,
         tolerances: cut.tolerances,
         control_keeps_tip: cut.control_keeps_tip,
+        straight: cut.straight,
         balances: true,
     };
     linearise.split(&run, model).map_err(|(_, stuck)| stuck)

@@ -149,6 +149,8 @@ capabilities! {
     48 WORD_LETTER;
     /// Words of rotary axes without ends as a place within one turn, whose sign is the way there.
     49 SIGN_IS_WAY;
+    /// `Pose`: cuts that lead the tool of a robot straight.
+    50 POSES;
 }
 
 impl Capabilities {
@@ -229,6 +231,7 @@ impl Event<'_> {
             Event::Instead { .. } => Capabilities::INSTEAD,
             Event::Cuts { .. } => Capabilities::CUTS,
             Event::WordLetter { .. } => Capabilities::WORD_LETTER,
+            Event::Pose { .. } => Capabilities::POSES,
             _ => Capabilities::NONE,
         }
     }

@@ -497,6 +497,19 @@ events! { <'a>
         /// The letter behind which it stands.
         letter: &'a str,
     };
+    /// How the tool stands at the end of the cut that comes next, under `POSES`: the control leads it there straight, turned
+    /// evenly about one direction. The frame of the tool has its origin in the tip and its Z from the spindle to the tip;
+    /// its X is that of the machine frame, laid across, where all axes are at zero.
+    45 POSE "the pose of a tool" Pose {
+        /// The tip, mm, machine frame.
+        origin: [f64; 3],
+        /// How the frame is turned against the machine's: a unit quaternion, the scalar first.
+        quaternion: [f64; 4],
+        /// The same as a turn about its own direction, radians.
+        rotation: [f64; 3],
+        /// The same as turns about Z, then about the new Y, then about the new X, degrees.
+        angles: [f64; 3],
+    };
     }
 }
 

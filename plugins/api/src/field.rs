@@ -221,6 +221,23 @@ impl Field<'_> for [f64; 3] {
     }
 }
 
+impl Field<'_> for [f64; 4] {
+    const SHAPE: FieldShape = FieldShape::Numbers(4);
+    const SAMPLE: Self = [1.0, 0.0, 0.0, 0.0];
+
+    fn put(self, to: &mut Flat) {
+        to.numbers(&self);
+    }
+
+    fn get(from: &mut FieldReader<'_>) -> Result<Self, NotKnown> {
+        Ok(from.some().unwrap_or_default())
+    }
+
+    fn check(self, _: &Promise) -> Result<(), String> {
+        finite(&self, "its quaternion")
+    }
+}
+
 /// The axis words of a move.
 impl<'a> Field<'a> for &'a [f64] {
     const SHAPE: FieldShape = FieldShape::List;

@@ -49,6 +49,7 @@ pub const ORDER: &[(&str, &str)] = &[
     ("Instead", "in front of the event that it stands for"),
     ("Cuts", "at the part, not in a cycle"),
     ("WordLetter", "at the part, not in a cycle"),
+    ("Pose", "at the part, in front of a `Linear`"),
 ];
 
 /// Follows a program, and says where it breaks the promised order.
@@ -116,6 +117,7 @@ impl EventOrder {
             | Event::Spline { .. }
             | Event::Surface { .. }
             | Event::WordLetter { .. }
+            | Event::Pose { .. }
             | Event::Probe { .. } => unless(!self.at_part, "before a first position"),
             Event::Park { .. }
             | Event::Turn { .. }

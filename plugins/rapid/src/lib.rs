@@ -1,6 +1,7 @@
-//! RAPID of ABB's robots: `MoveAbsJ`, which leads all axes evenly in time to their values.
+//! RAPID of ABB's robots: `MoveAbsJ`, which leads all axes evenly in time to their values, and `MoveL`, which leads the
+//! tool straight to a pose.
 //!
-//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
+//! What it assumes about the control stands in `docs/src/machine-builder/robots.md`.
 
 use post_plugin::{
     ARM_AXES, ARM_JOINTS, ArmWords, Capabilities, Coolant, Dialect, Event, Feed, Format, Language,
@@ -40,6 +41,10 @@ struct Rapid {
     zone: String,
     tool: String,
     optional_stop: String,
+    /// Where the tool is led straight next, as a `robtarget` has it.
+    pose: Option<String>,
+    /// The control has been told to go on by whichever solution is nearest.
+    follows: bool,
 }
 
 const OPTIONS: &[OptionSpec] = &[
@@ -59,7 +64,7 @@ const OPTIONS: &[OptionSpec] = &[
     OptionSpec::text(
         "tool",
         "tool0",
-        "Tool of every move: the control takes load and velocity from it, and no position.",
+        "Tool of every move (tooldata): `MoveAbsJ` takes load and velocity from it, `MoveL` its frame too.",
     ),
     OptionSpec::lines("optional_stop", "OptionalStop;", "Lines of an optional stop."),
 ];
@@ -115,6 +120,8 @@ impl Dialect for Rapid {
             zone: setup.text("zone").to_owned(),
             tool: setup.text("tool").to_owned(),
             optional_stop: setup.text("optional_stop").to_owned(),
+            pose: None,
+            follows: false,
         })
     }
 
@@ -132,7 +139,7 @@ impl Dialect for Rapid {
 
     /// No length is compensated by the control: values of axes are those with the tool that the program is for.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET
+        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET | Capabilities::POSES
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
@@ -142,6 +149,7 @@ impl Dialect for Rapid {
 
     fn relies_on(&self) -> Vec<String> {
         let mut relies = vec![
+            "where MoveL is written it leads the tool straight and turns it evenly about one direction; the frame of the tool has its origin in the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all axes are at zero; wobj0 is the machine file's frame".to_owned(),
             "MoveAbsJ leads all axes of the arm and beside it evenly in time, so that they arrive together, whatever tool and work object are".to_owned(),
             "the procedures SpindleCw, SpindleCcw, SpindleOrient, SpindleOff, CoolantOn, CoolantOff, OptionalStop and ChangeTool are on the control, where the program calls them".to_owned(),
         ];
@@ -178,7 +186,14 @@ impl Dialect for Rapid {
                 self.all(words, feed, "fine", out)?;
             }
             Event::Rapid { words, .. } => self.all(words, None, "fine", out)?,
-            Event::Linear { words, feed, .. } => self.all(words, Some(feed), &self.zone, out)?,
+            Event::Pose { origin, quaternion, .. } => self.lead(origin, quaternion, out)?,
+            Event::Linear { words, feed, .. } => match self.pose.take() {
+                Some(pose) => {
+                    let target = format!("[{pose},[0,0,0,0],[{}]]", self.targets(words)[1]);
+                    self.go("MoveL", &target, Some(feed), &self.zone, out)?;
+                }
+                None => self.all(words, Some(feed), &self.zone, out)?,
+            },
             Event::Dwell { seconds } => line(&format!("WaitTime {};", number(seconds, 3)), out),
             Event::Stop => line("Stop;", out),
             Event::OptionalStop => line(&self.optional_stop, out),
@@ -228,10 +243,60 @@ impl Rapid {
         line(&format!("MoveAbsJ here,vmax,fine,{};", self.tool), out);
     }
 
+    /// The tool is led straight by the next move.
+    fn lead(
+        &mut self,
+        origin: [f64; 3],
+        quaternion: [f64; 4],
+        out: &mut String,
+    ) -> Result<(), String> {
+        if self.tool == "tool0" {
+            return Err("MoveL leads the frame of a tool, and tool0 is none: name its tooldata, [control.rapid] tool".to_owned());
+        }
+        if !self.follows {
+            // Whichever solution is nearest: the points stand close enough.
+            line("ConfL \\Off;", out);
+            self.follows = true;
+        }
+        let list = |numbers: &[f64], decimals| {
+            let numbers: Vec<String> =
+                numbers.iter().map(|value| number(*value, decimals)).collect();
+            numbers.join(",")
+        };
+        self.pose = Some(format!("[{}],[{}]", list(&origin, 4), list(&quaternion, 8)));
+        Ok(())
+    }
+
+    /// Values of the axes of the arm, and of those beside it.
+    fn targets(&self, words: &[f64]) -> [String; 2] {
+        let own = self.axes.words();
+        let values: [String; ARM_AXES] = std::array::from_fn(|place| match own[place] {
+            Some(word) => number(words.get(word).copied().unwrap_or(0.0), self.decimals[word]),
+            None if place < ARM_JOINTS => "0".to_owned(),
+            // An axis that is not there.
+            None => "9E9".to_owned(),
+        });
+        let (arm, beside) = values.split_at(ARM_JOINTS);
+        [arm.join(","), beside.join(",")]
+    }
+
     /// Leads all axes to their words.
     fn all(
         &self,
         words: &[f64],
+        feed: Option<Feed>,
+        zone: &str,
+        out: &mut String,
+    ) -> Result<(), String> {
+        let [arm, beside] = self.targets(words);
+        self.go("MoveAbsJ", &format!("[[{arm}],[{beside}]]"), feed, zone, out)
+    }
+
+    /// A move to a target.
+    fn go(
+        &self,
+        name: &str,
+        target: &str,
         feed: Option<Feed>,
         zone: &str,
         out: &mut String,
@@ -248,16 +313,7 @@ impl Rapid {
             }
             Some(other) => return Err(format!("a robot has no feed like {other}")),
         };
-        let own = self.axes.words();
-        let values: [String; ARM_AXES] = std::array::from_fn(|place| match own[place] {
-            Some(word) => number(words.get(word).copied().unwrap_or(0.0), self.decimals[word]),
-            None if place < ARM_JOINTS => "0".to_owned(),
-            // An axis that is not there.
-            None => "9E9".to_owned(),
-        });
-        let (arm, beside) = values.split_at(ARM_JOINTS);
-        let target = format!("[[{}],[{}]]", arm.join(","), beside.join(","));
-        line(&format!("MoveAbsJ {target},{pace},{zone},{};", self.tool), out);
+        line(&format!("{name} {target},{pace},{zone},{};", self.tool), out);
         Ok(())
     }
 }

@@ -1,6 +1,7 @@
-//! URScript of Universal Robots: `movej`, which leads all joints evenly in time to their values.
+//! URScript of Universal Robots: `movej`, which leads all joints evenly in time to their values, and `movel`, which leads
+//! the tool straight to a pose.
 //!
-//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
+//! What it assumes about the control stands in `docs/src/machine-builder/robots.md`.
 
 use post_plugin::{
     ARM_JOINTS, ArmWords, Capabilities, Coolant, Dialect, Event, Feed, Format, Language, Meaning,
@@ -22,6 +23,8 @@ struct UrScript {
     blend: f64,
     program: String,
     optional_stop: String,
+    /// Where the tool is led straight next, m and radians.
+    pose: Option<String>,
 }
 
 const OPTIONS: &[OptionSpec] = &[
@@ -107,6 +110,7 @@ impl Dialect for UrScript {
             blend: setup.number("blend"),
             program: identifier(setup.program, NAME),
             optional_stop: setup.text("optional_stop").to_owned(),
+            pose: None,
         })
     }
 
@@ -124,7 +128,7 @@ impl Dialect for UrScript {
 
     /// No length is compensated by the control: values of joints are those with the tool that the program is for.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET
+        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET | Capabilities::POSES
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
@@ -134,6 +138,7 @@ impl Dialect for UrScript {
 
     fn relies_on(&self) -> Vec<String> {
         let mut relies = vec![
+            "where movel is written it leads the tool straight and turns it evenly about one direction; the tool centre point of the installation is the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all joints are at zero; the base is the machine file's frame".to_owned(),
             "movej leads all joints evenly in time, so that they arrive together, and t is the time of the whole move".to_owned(),
             "the functions spindle_cw, spindle_ccw, spindle_orient, spindle_off, coolant_on, coolant_off, optional_stop and change_tool are on the control, where the program calls them".to_owned(),
         ];
@@ -172,7 +177,18 @@ impl Dialect for UrScript {
             Event::Position { words, feed: Some(feed), .. } => {
                 self.all(words, &time(feed)?, 0.0, out);
             }
-            Event::Linear { words, feed, .. } => self.all(words, &time(feed)?, self.blend, out),
+            Event::Pose { origin, rotation, .. } => {
+                let metres = origin.map(|value| number(value / 1000.0, 7));
+                let radians = rotation.map(|value| number(value, 8));
+                self.pose = Some(format!("p[{}, {}]", metres.join(", "), radians.join(", ")));
+            }
+            Event::Linear { words, feed, .. } => match self.pose.take() {
+                Some(pose) => {
+                    let line_of = format!("movel({pose}, {}, r={})", time(feed)?, self.blended());
+                    line(&line_of, out);
+                }
+                None => self.all(words, &time(feed)?, self.blend, out),
+            },
             Event::Dwell { seconds } => line(&format!("sleep({})", number(seconds, 3)), out),
             Event::Stop => line("popup(\"Program stop\", blocking=True)", out),
             Event::OptionalStop => {
@@ -222,6 +238,10 @@ fn time(feed: Feed) -> Result<String, String> {
 impl UrScript {
     fn fast(&self) -> String {
         format!("a={}, v={}", number(self.acceleration, 3), number(self.velocity, 3))
+    }
+
+    fn blended(&self) -> String {
+        if self.blend == 0.0 { "0".to_owned() } else { number(self.blend, 4) }
     }
 
     fn degrees(&self, value: f64) -> String {

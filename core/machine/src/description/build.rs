@@ -468,6 +468,7 @@ impl Builder<'_> {
             feed_length: file.feed_length,
             tcp_feed_length: file.tcp_feed_length,
             inverse_time: file.inverse_time,
+            moves: file.moves,
             rapid: file.rapid,
             tool_length: file.tool_length,
             cycles: file.cycles,

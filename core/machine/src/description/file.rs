@@ -504,6 +504,16 @@ words! {
 }
 
 words! {
+    /// How a robot's control leads cuts.
+    Moves = Joints {
+        /// All joints evenly to their positions.
+        Joints "joints",
+        /// The tool straight to its pose, turned evenly about one direction; in a dialect that has words for it.
+        Straight "straight",
+    }
+}
+
+words! {
     /// How the holes of drilling cycles are written.
     Cycles = Native {
         /// As cycles of the control where it has them and they do what the CL file asks for, else as moves.
@@ -536,6 +546,8 @@ keys! {
         feed: FeedMode,
         /// What F means under inverse time; minutes if not said.
         inverse_time: InverseTime,
+        /// How a robot's control leads cuts; joints if not said.
+        moves: Moves,
         /// The length that the control divides by F when it does not keep the tip; if not said as the dialect has it:
         /// combined for Brother, Fanuc, Hurco, Mazak, Mitsubishi, Okuma and Syntec, linear for the others.
         feed_length: Option<FeedLength>,

@@ -60,8 +60,8 @@ pub use cl_words::WordRule;
 pub use errors::{ErrorTable, ErrorUnits};
 pub use file::{
     ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
-    InverseTime, Method, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp, TcpFeedLength,
-    ToolLength,
+    InverseTime, Method, Moves, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp,
+    TcpFeedLength, ToolLength,
 };
 pub use frame::Frame;
 pub use layers::{Source, readable};
@@ -368,6 +368,8 @@ pub struct ControlRules {
     pub tcp_feed_length: TcpFeedLength,
     /// What F means under inverse time.
     pub inverse_time: InverseTime,
+    /// How a robot's control leads cuts.
+    pub moves: Moves,
     /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed; none: as the control
     /// asks for ([`Machine::rapid`]).
     pub rapid: Option<Rapid>,

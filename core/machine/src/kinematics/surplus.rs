@@ -129,6 +129,28 @@ impl Solver {
         }
     }
 
+    /// The tool axis, and the direction that lies on the X of the machine frame laid across it where all joints are at zero:
+    /// unit vectors, part frame. None where a tool that turns has no turn about itself to spare.
+    pub fn stand(&self, joints: &Joints) -> Option<[Vector3<f64>; 2]> {
+        let SolutionMethod::Numeric { framed: Some(framed), .. } = &self.form else {
+            return None;
+        };
+        let stands = framed.forward(joints);
+        Some([stands.axis, stands.edge])
+    }
+
+    /// The solution next to `from` at which the tool stands as a whole: `pose` has the second direction of
+    /// [`Solver::stand`] for its edge. None where nothing is found.
+    pub fn search_stand(&self, pose: &Pose, from: &Joints, tolerance: f64) -> Option<Joints> {
+        let SolutionMethod::Numeric { framed: Some(framed), free, .. } = &self.form else {
+            return None;
+        };
+        let mut left = numeric::STEPS;
+        let (joints, miss) = numeric::solve(framed, free, pose, from, &mut left);
+        (miss < tolerance && self.verified(&joints, pose, tolerance.max(VERIFIED)))
+            .then_some(joints)
+    }
+
     /// Joints beyond what a pose needs, in the order of the chain: each solution has them wherever they stand. None of a
     /// chain with a closed form.
     pub fn surplus(&self) -> &[usize] {

@@ -14,9 +14,10 @@ use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
 use super::bound::DeviationBound;
 use super::certificate::{self, BlockDerivatives, DerivativeBound, chord_angle};
+use super::even_turn::EvenTurn;
 use super::heading;
 use super::node::{PathNode, Placer};
-use post_machine::description::{Machine, Tcp};
+use post_machine::description::{Machine, Moves, Tcp};
 use post_machine::kinematics::orientation::angle;
 use post_machine::kinematics::{Joints, Pose};
 
@@ -42,7 +43,13 @@ pub struct NodeMove<'a> {
     pub tolerances: MoveTolerances,
     /// The tip follows the words in a straight line by itself.
     pub control_keeps_tip: bool,
+    /// A robot's control leads the tool straight, turned evenly about one direction. Joints that went evenly themselves
+    /// would stray by so much at most, mm: so it is known where they go between.
+    pub straight: Option<f64>,
 }
+
+/// What the printed pose of a tool that is led straight misses by, at least four decimals of a mm and five of a degree.
+const PRINTED: DeviationBound = DeviationBound { tip: 1e-4, axis: 1e-6 };
 
 /// Between samples the certificate may be blind by this share of the tolerance.
 const BLIND: f64 = 0.02;
@@ -70,6 +77,7 @@ impl<'n> NodeMove<'n> {
         } else {
             (accuracy.tolerance, accuracy.axis_tolerance)
         };
+        let straight = machine.control.moves == Moves::Straight && !loose;
         Self {
             placer,
             from,
@@ -78,7 +86,8 @@ impl<'n> NodeMove<'n> {
                 tip: tip - chord - if loose { 0.0 } else { placer.reserve() },
                 axis,
             },
-            control_keeps_tip: machine.control.tcp == Tcp::Control,
+            control_keeps_tip: machine.control.tcp == Tcp::Control || straight,
+            straight: straight.then_some(accuracy.rapid_tolerance),
         }
     }
 }
@@ -120,7 +129,10 @@ impl NodeMove<'_> {
     /// A leading edge is not counted.
     pub(super) fn over_halfway(&self) -> bool {
         let (from, to) = (self.from, self.to);
-        let pose = self.placer.solver().chain().halfway(&from.trace, &to.trace);
+        let pose = match self.even_turn() {
+            Some(turn) => Pose { axis: turn.at(0.5), ..Pose::default() },
+            None => self.placer.solver().chain().halfway(&from.trace, &to.trace),
+        };
         let chord = from.target.tip * 0.5 + to.target.tip * 0.5;
         if (self.reached(&pose, 0.5) - chord).norm() > CERTAIN * self.tolerances.tip {
             return true;
@@ -151,7 +163,32 @@ impl NodeMove<'_> {
         if chain.edge().is_some() {
             bend.lead = bend.turn + heading::bend(from, to);
         }
-        (bend, sweep)
+        match self.straight {
+            Some(room) => (self.led_straight(bend, sweep, room), sweep),
+            None => (bend, sweep),
+        }
+    }
+
+    /// The bend of a tool that is led straight; without end where joints that went evenly by themselves, which `evenly`
+    /// bounds, would stray by more than `room`, mm.
+    fn led_straight(&self, evenly: DerivativeBound, sweep: f64, room: f64) -> DerivativeBound {
+        let chain = self.placer.solver().chain();
+        let strays = |bend: f64| certificate::deviation(0.0, bend) > room;
+        let tight = || {
+            let course = BlockDerivatives::new(chain, &self.from.trace, &self.to.trace);
+            course.bend(self.from.target.axis, self.to.target.axis, sweep).tip
+        };
+        let tip = if strays(evenly.tip) && strays(tight()) { f64::INFINITY } else { 0.0 };
+        let turn = self.even_turn().map_or(f64::INFINITY, |turn| turn.bend());
+        DerivativeBound { tip, axis: turn + sweep * sweep, turn, lead: evenly.lead }
+    }
+
+    /// How the tool turns where it is led straight.
+    fn even_turn(&self) -> Option<EvenTurn> {
+        self.straight?;
+        let solver = self.placer.solver();
+        let [from, to] = [self.from, self.to].map(|node| solver.stand(&node.trace.joints));
+        Some(EvenTurn::between(from?, to?))
     }
 
     /// The bound by the block's second derivatives, and its bend; see [`NodeMove::quick`].
@@ -159,6 +196,9 @@ impl NodeMove<'_> {
         &self,
         (quick, sweep): (DerivativeBound, f64),
     ) -> (DeviationBound, DerivativeBound) {
+        if self.straight.is_some() {
+            return (self.bound(quick), quick);
+        }
         let (from, to) = (self.from, self.to);
         let chain = self.placer.solver().chain();
         let course = BlockDerivatives::new(chain, &from.trace, &to.trace);
@@ -200,18 +240,24 @@ impl NodeMove<'_> {
     /// What the control point bends by. A control that keeps the tip straight swings the points above it.
     #[inline]
     fn tip_bend(&self, bend: DerivativeBound) -> f64 {
-        if self.control_keeps_tip {
-            libm::fabs(self.placer.control_point().along) * bend.turn
-        } else {
-            bend.tip
+        if !self.control_keeps_tip {
+            return bend.tip;
         }
+        let swing = libm::fabs(self.placer.control_point().along) * bend.turn;
+        if self.straight.is_some() { swing + bend.tip } else { swing }
     }
 
     /// What floating point rounds off at most.
     #[inline]
     fn margin(&self) -> DeviationBound {
         let (from, to) = (&self.from.trace.joints, &self.to.trace.joints);
-        self.placer.margin(from, to)
+        let margin = self.placer.margin(from, to);
+        match self.straight {
+            Some(_) => {
+                DeviationBound { tip: margin.tip + PRINTED.tip, axis: margin.axis + PRINTED.axis }
+            }
+            None => margin,
+        }
     }
 
     /// How far a cutting edge strays beyond the control point at most, mm; no model sees that.
@@ -311,6 +357,7 @@ impl NodeMove<'_> {
         OrientationPath {
             block: self,
             axis: OrientationArc::new(from.axis, to.axis),
+            even: self.even_turn(),
             heading: follows.then(|| OrientationArc::new(from.edge, to.edge)),
         }
     }
@@ -320,6 +367,8 @@ impl NodeMove<'_> {
 struct OrientationPath<'a> {
     block: &'a NodeMove<'a>,
     axis: OrientationArc,
+    /// How the tool turns where it is led straight.
+    even: Option<EvenTurn>,
     /// Great circle of the heading of a tool with a leading edge.
     heading: Option<OrientationArc>,
 }
@@ -328,8 +377,13 @@ impl OrientationPath<'_> {
     /// Deviation at the share `t`: see [`NodeMove::deviation`].
     fn deviation(&self, t: f64) -> Deviation {
         let (from, to) = (self.block.from, self.block.to);
-        let joints = between(&from.trace.joints, &to.trace.joints, t);
-        let pose = self.block.placer.solver().chain().forward(&joints);
+        let pose = match &self.even {
+            Some(even) => Pose { axis: even.at(t), ..Pose::default() },
+            None => {
+                let joints = between(&from.trace.joints, &to.trace.joints, t);
+                self.block.placer.solver().chain().forward(&joints)
+            }
+        };
         let chord = from.target.tip * (1.0 - t) + to.target.tip * t;
         let tip = self.block.reached(&pose, t) - chord;
         let axis = self.axis.at(t);

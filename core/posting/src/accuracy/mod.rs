@@ -13,6 +13,7 @@ mod columns;
 mod compensate;
 mod deviation;
 mod even;
+mod even_turn;
 mod fewest;
 mod heading;
 mod linearise;

@@ -23,6 +23,9 @@ pub struct NodeRun<'a> {
     pub tolerances: MoveTolerances,
     /// The tip follows the words in a straight line by itself.
     pub control_keeps_tip: bool,
+    /// As [`NodeMove::straight`]: a block goes from CL point to CL point then, since what stands between is no block of
+    /// its own.
+    pub straight: Option<f64>,
     /// Points put in may stand off the path, so that blocks are balanced about it.
     pub balances: bool,
 }
@@ -64,6 +67,7 @@ impl<'a> NodeRun<'a> {
             to,
             tolerances: self.tolerances,
             control_keeps_tip: self.control_keeps_tip,
+            straight: self.straight,
         }
     }
 
@@ -146,7 +150,8 @@ impl<'a> NodeRun<'a> {
         (to, end): (&PathNode, RunPosition),
         way: &[f64],
     ) -> Option<DeviationBound> {
-        if self.block(from, to).goes_another_way() {
+        let beyond = self.straight.is_some() && end.leg > start.leg;
+        if beyond || self.block(from, to).goes_another_way() {
             return None;
         }
         let mut bound = DeviationBound::default();

@@ -596,6 +596,7 @@ impl<'a> BlockStage<'a> {
             nodes,
             tolerances: planned.tolerances,
             control_keeps_tip: planned.control_keeps_tip,
+            straight: planned.straight,
             // A rapid has no surface to be balanced about. A tip that stands still must seem to: its feed is taken
             // along the axes.
             balances: !first.loose && moves,

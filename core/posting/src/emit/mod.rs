@@ -16,9 +16,10 @@ mod writer;
 use std::rc::Rc;
 use std::thread::Scope;
 
+use nalgebra::{Rotation3, UnitQuaternion};
 use post_machine::axis_words::{self, AxisWords};
-use post_machine::description::{Machine, TextPlace};
-use post_machine::kinematics::Joints;
+use post_machine::description::{Machine, Moves, TextPlace};
+use post_machine::kinematics::{Joints, Solver};
 use post_plugin::{Capabilities, Compensation, DialectSession, Event, List, ToolPose};
 
 use crate::blocks::{BlockKind, BlockNote, BlockReason, MotionBlock, WayAcross};
@@ -83,6 +84,8 @@ pub(crate) struct EmitStage<'a> {
     worked: bool,
     compensation: CompensationState,
     limits: LimitWatch,
+    /// Says how the tool stands where it is led straight.
+    straight: Option<Box<Solver>>,
     /// Columns of a run of cuts on their way to an event.
     cuts: Vec<f64>,
     /// Observers of the program; none if nobody looks on.
@@ -128,6 +131,9 @@ impl<'a> EmitStage<'a> {
             worked: false,
             compensation: CompensationState::default(),
             limits: LimitWatch::default(),
+            straight: (machine.control.moves == Moves::Straight)
+                .then(|| machine.solver(0.0).ok().map(Box::new))
+                .flatten(),
             cuts: Vec::new(),
             observers: None,
             findings: findings.clone(),
@@ -281,6 +287,12 @@ impl<'a> EmitStage<'a> {
                     self.clamp(block);
                 }
                 self.extremes.mark(block, self.writer.next());
+                if let (Some(solver), false, true) =
+                    (&self.straight, block.loose, block.time.feed.is_some())
+                    && let Some(pose) = pose(solver, self.machine, block)
+                {
+                    self.writer.push(line, pose);
+                }
                 let (tool, words) = (stands(block), &block.words[..self.writer.words()]);
                 self.writer.push(
                     line,
@@ -484,6 +496,21 @@ fn number(elements: &mut [StreamItem<MotionBlock>], lines: &mut dyn Iterator<Ite
             StreamItem::Command { .. } | StreamItem::Note { .. } => {}
         }
     }
+}
+
+/// How a tool that is led straight stands at the end of a block.
+fn pose(solver: &Solver, machine: &Machine, block: &MotionBlock) -> Option<Event<'static>> {
+    let [axis, x] = solver.stand(&block.joints)?;
+    let z = -axis;
+    let frame = Rotation3::from_basis_unchecked(&[x, z.cross(&x), z]);
+    let quaternion = UnitQuaternion::from_rotation_matrix(&frame);
+    let (about_x, about_y, about_z) = frame.euler_angles();
+    Some(Event::Pose {
+        origin: (block.tip + machine.mount).into(),
+        quaternion: [quaternion.w, quaternion.i, quaternion.j, quaternion.k],
+        rotation: quaternion.scaled_axis().into(),
+        angles: [about_z, about_y, about_x].map(f64::to_degrees),
+    })
 }
 
 /// Where the tool stands at the end of a block.

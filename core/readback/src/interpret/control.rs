@@ -134,6 +134,7 @@ impl ControlState {
             cycles: super::cycles::CycleState::default(),
             spline: None,
             joint_variable: super::statements::JointVariable::default(),
+            path_velocity: None,
             path: super::conversational::PathMemory::default(),
             state: MachineState {
                 solver: Arc::clone(&solver),

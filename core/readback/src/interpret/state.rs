@@ -69,6 +69,8 @@ pub(super) struct ControlState {
     pub spline: Option<Box<OpenSpline>>,
     /// The variable of joint positions that a robot's program has filled last.
     pub joint_variable: super::statements::JointVariable,
+    /// Velocity of the tip where a robot's control leads it straight, m/s.
+    pub path_velocity: Option<f64>,
     /// What conversational path functions remember.
     pub path: super::conversational::PathMemory,
     /// What its motions share; handed on when something of it changes. After a change: `ControlState::state_changed`.

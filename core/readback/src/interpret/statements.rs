@@ -1,24 +1,30 @@
-//! Statements of robots' languages that lead the joints of an arm to positions, and what stands between them.
+//! Statements of robots' languages that lead the joints of an arm to positions or its tool straight to a pose, and what
+//! stands between them.
 //!
 //! The dialect's vocabulary says what a name does (`MoveAbsJ`, `PTP`, `movej` are [`Meaning::JointMove`]); where the
 //! positions, the time and the speed stand in a statement is told by how it is written. All else might move the arm, and is
 //! refused.
 
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use post_grammar::nc::{NcBlock, NcItem, NcTerm};
 use post_machine::description::InverseTime;
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::Pose;
 use post_plugin::{ARM_AXES, ARM_JOINTS, Meaning, arm_axis};
 
 use super::go::MotionTarget;
 use super::spindle_request::SpindleRequest;
 use super::state::{ControlState, FeedMeaning};
 use crate::lexicon::WordMeaning;
-use crate::{Curve, MotionKind, ProgramEvent};
+use crate::{Curve, Interpolation, MotionKind, ProgramEvent};
 
 type Answer<T> = Result<T, Box<Diagnostic>>;
 
 /// From this on a position of an axis beside the arm says that there is none.
 const NO_AXIS: f64 = 8.9e9;
+
+/// A pose that the joints miss by more than this is not reached, mm, its frame on the arm of the search.
+const STANDS: f64 = 1e-6;
 
 /// A variable that was filled with where the joints stand, and what was set of it since.
 #[derive(Clone, Debug, Default)]
@@ -102,12 +108,7 @@ fn obey(control: &mut ControlState, name: &str, meaning: Meaning, terms: &[NcTer
     match meaning {
         Meaning::Nothing => {}
         Meaning::JointMove => return joint_move(control, name, terms),
-        Meaning::PoseMove => {
-            let message = format!(
-                "{name} goes to a pose, which is not read: moves to positions of the joints are"
-            );
-            return Err(control.refuse("nc-statement", message));
-        }
+        Meaning::PoseMove => return pose_move(control, name, terms),
         Meaning::Dwell => {
             let event = ProgramEvent::Dwell { time: due(control)?, revolutions: false };
             control.tell(event);
@@ -183,6 +184,18 @@ fn assign(control: &mut ControlState, left: &[NcTerm], right: &[NcTerm]) -> Answ
     }
     match control.lexicon.name(name) {
         WordMeaning::Means(Meaning::Nothing) => Ok(()),
+        // `$VEL.CP`, m/s.
+        WordMeaning::Means(Meaning::Feed) => {
+            control.path_velocity = angle(right, false).filter(|velocity| *velocity > 0.0);
+            Ok(())
+        }
+        // `$BASE=$NULLFRAME`.
+        WordMeaning::Means(Meaning::WorkOffset)
+            if matches!(right, [NcTerm::Name(to)]
+                if control.lexicon.name(to) == WordMeaning::Means(Meaning::WorkOffsetOff)) =>
+        {
+            Ok(())
+        }
         _ => {
             let message = format!("{name} is set here, and might change how the arm moves");
             Err(control.refuse("nc-statement", message))
@@ -370,6 +383,112 @@ fn speed_of(speed: &str, switches: &[NcTerm]) -> Option<Pace> {
         },
         _ => None,
     }
+}
+
+/// Leads the tool straight to the pose that the statement says, in the frame of the machine.
+fn pose_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> Answer<()> {
+    let arguments = match terms {
+        [NcTerm::Group(b'(', inside)] => parts(inside),
+        _ => parts(terms),
+    };
+    let not_read = |control: &ControlState| {
+        let message = format!(
+            "the pose of {name} is not written as it is read here, or it is no straight move to one"
+        );
+        control.refuse("nc-statement", message)
+    };
+    let Some((first, rest)) = arguments.split_first() else {
+        return Err(not_read(control));
+    };
+    let straight = matches!(name, "MOVEL" | "LIN");
+    let (pose, behind) = match first {
+        [NcTerm::Group(b'[', inside), behind @ ..] => (target_pose(inside), behind),
+        [NcTerm::Group(b'{', inside), behind @ ..] => (named_pose(inside), behind),
+        [NcTerm::Name(p), NcTerm::Group(b'[', inside), behind @ ..] if p == "P" => {
+            (rotated_pose(inside), behind)
+        }
+        _ => (None, &first[..0]),
+    };
+    let (Some(pose), true) = (pose, straight) else {
+        return Err(not_read(control));
+    };
+    let pace = match (name, control.path_velocity) {
+        ("LIN", Some(velocity)) => {
+            pace(control, name, behind, rest)?;
+            Pace::Tip(60.0 * 1000.0 * velocity)
+        }
+        _ => pace(control, name, behind, rest)?,
+    };
+    if pace == Pace::Rapid {
+        let message = format!("{name} does not say how fast it leads the tool");
+        return Err(control.refuse("nc-statement", message));
+    }
+    let frame = pose.rotation * Vector3::z();
+    let wanted = Pose {
+        tip: pose.translation.vector - control.machine.mount,
+        axis: -frame,
+        edge: pose.rotation * Vector3::x(),
+    };
+    let joints = control.state.solver.search_stand(&wanted, &control.at.joints, STANDS);
+    let Some(joints) = joints else {
+        let message = format!("the joints do not reach the pose of {name} from where they stand");
+        return Err(control.refuse("nc-reach", message));
+    };
+    control.begins();
+    control.relies_on_nothing_left();
+    set_pace(control, pace, &joints);
+    let from = control.at;
+    control.said |= (1 << control.machine.axes.len()) - 1;
+    control.stand(&joints);
+    control.moved(MotionKind::Feed, Interpolation::TipAndAxis, from);
+    Ok(())
+}
+
+/// Numbers of a list, `count` of them.
+fn numbers<const N: usize>(terms: &[NcTerm]) -> Option<[f64; N]> {
+    let list: Option<Vec<f64>> = parts(terms).into_iter().map(|part| angle(part, false)).collect();
+    list?.try_into().ok()
+}
+
+/// `[[800,0,700],[0,0,1,0],[0,0,0,0],[9E9,..]]`: mm, and a quaternion with its scalar first.
+fn target_pose(inside: &[NcTerm]) -> Option<Isometry3<f64>> {
+    let lists = parts(inside);
+    let [
+        [NcTerm::Group(b'[', place)],
+        [NcTerm::Group(b'[', turn)],
+        _,
+        [NcTerm::Group(b'[', beside)],
+    ] = lists.as_slice()
+    else {
+        return None;
+    };
+    let [w, i, j, k] = numbers(turn)?;
+    let turn = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 0.5)?;
+    let alone = numbers::<ARM_JOINTS>(beside)?.iter().all(|value| *value >= NO_AXIS);
+    alone.then_some(Isometry3::from_parts(Vector3::from(numbers::<3>(place)?).into(), turn))
+}
+
+/// `{X 800,Y 0,Z 700,A 0,B 90,C 0}`: mm, and degrees about Z, then about the new Y, then about the new X.
+fn named_pose(inside: &[NcTerm]) -> Option<Isometry3<f64>> {
+    let mut said = [None; 6];
+    for part in parts(inside) {
+        let [NcTerm::Name(name), NcTerm::Number(number)] = part else {
+            return None;
+        };
+        let place = "XYZABC".find(name.as_str()).filter(|_| name.len() == 1)?;
+        said[place] = Some(number.value);
+    }
+    let [x, y, z, a, b, c] = said;
+    let [a, b, c] = [a?, b?, c?].map(f64::to_radians);
+    let turn = UnitQuaternion::from_euler_angles(c, b, a);
+    Some(Isometry3::from_parts(Vector3::new(x?, y?, z?).into(), turn))
+}
+
+/// `p[0.8,0,0.7,0,3.14,0]`: metres, and a turn about its own direction, radians.
+fn rotated_pose(inside: &[NcTerm]) -> Option<Isometry3<f64>> {
+    let [x, y, z, i, j, k] = numbers(inside)?;
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(i, j, k));
+    Some(Isometry3::from_parts((Vector3::new(x, y, z) * 1000.0).into(), turn))
 }
 
 /// Leads the axes of the machine to the positions.

@@ -62,7 +62,9 @@ impl NcControl {
     ) -> Self {
         let mut counted = machine.clone();
         let first = offsets.tools.first().map(|(_, length)| *length);
+        // The words of a robot have the tool in the spindle in them, whichever it is.
         if spoken.writes.lengths() == Lengths::WorkOffset
+            && spoken.language != Language::Joints
             && let Some(length) = offsets.length.or(first)
         {
             counted.gauge -= machine.tool_axis * length;

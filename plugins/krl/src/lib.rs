@@ -218,6 +218,9 @@ impl Krl {
             Some(format!("{} {value}", axis(place)))
         });
         let values: Vec<String> = values.collect();
+        if values.is_empty() {
+            return;
+        }
         line(&format!("PTP {{{}}}", values.join(",")), out);
         self.tip = tool.map(|tool| tool.tip);
     }

@@ -512,7 +512,8 @@ fn go(control: &mut ControlState, target: &JointTarget, pace: Pace) -> Answer<()
         joints[axis] = control.shown(axis, *value);
         said |= 1 << axis;
     }
-    if target.some {
+    // Some axes alone go to positions of the machine; all of them to a point of the program.
+    if target.some && said != (1 << control.machine.axes.len()) - 1 {
         control.uncouple(&mut joints, said);
         let kind = if pace == Pace::Rapid { MotionKind::Rapid } else { MotionKind::Feed };
         set_pace(control, pace, &joints);

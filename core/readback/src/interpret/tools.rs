@@ -62,7 +62,9 @@ impl ControlState {
     /// in the spindle, or no linear axis is there that could be shifted.
     fn is_whole(&self) -> bool {
         let mut axes = self.machine.axes.iter();
-        self.machine.length_axis == LengthAxis::None || axes.all(|axis| axis.joint.rotary)
+        self.lexicon.language() == Language::Joints
+            || self.machine.length_axis == LengthAxis::None
+            || axes.all(|axis| axis.joint.rotary)
     }
 
     /// The length in force may be another: finds it, and what the words count from with it.

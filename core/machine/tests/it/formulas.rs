@@ -34,6 +34,9 @@ struct Pose {
     upright: f64,
 }
 
+/// Draws a pose.
+type AnyPose = fn(&mut Rng) -> Pose;
+
 /// The tool with the words C and A.
 fn tool_ca(c: f64, a: f64) -> V {
     Rotation3::from_axis_angle(&V::z_axis(), c)
@@ -172,7 +175,7 @@ fn kr6(rng: &mut Rng) -> Pose {
 
 #[test]
 fn formulas_of_the_library_are_those_of_joints_that_move() {
-    let machines: [(&str, fn(&mut Rng) -> Pose); 4] =
+    let machines: [(&str, AnyPose); 4] =
         [("tricept", tricept), ("exechon", exechon), ("z3-head", z3), ("kr6-pose", kr6)];
     for (name, pose) in machines {
         let machine = library(name);
@@ -215,7 +218,7 @@ fn formulas_of_the_library_are_those_of_joints_that_move() {
 
 #[test]
 fn what_is_told_of_a_formula_over_a_region_holds_all_over_it() {
-    let machines: [(&str, fn(&mut Rng) -> Pose); 3] =
+    let machines: [(&str, AnyPose); 3] =
         [("tricept", tricept), ("exechon", exechon), ("z3-head", z3)];
     for (name, pose) in machines {
         let machine = library(name);

@@ -352,7 +352,7 @@ impl Engine {
             Event::Cycle { .. } => self.begin_cycle(event)?,
             Event::CyclePoint { words, .. } => self.cycle_point(words, out)?,
             Event::CycleOff => self.end_cycle(out),
-            Event::WordLetter { word, coordinate, letter } => {
+            Event::WordLetter { word, coordinate, letter } if self.table.interpolates => {
                 self.motion.settle(out);
                 self.motion.axes.rename(word as usize, letter, coordinate);
                 self.motion.moved_by_line();

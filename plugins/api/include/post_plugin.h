@@ -419,6 +419,8 @@ typedef struct {
 #define POST_WRITES_WORD_LETTER 0x0001000000000000u
 /* Words of rotary axes without ends as a place within one turn, whose sign is the way there. */
 #define POST_WRITES_SIGN_IS_WAY 0x0002000000000000u
+/* Pose: cuts that lead the tool of a robot straight. */
+#define POST_WRITES_POSES 0x0004000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */
@@ -701,6 +703,18 @@ typedef struct {
 /* It is a coordinate, a length; else the axis itself. */
 #define POST_AT_WORD_LETTER_COORDINATE 1u
 /* texts[0], letter: The letter behind which it stands. */
+/* How the tool stands at the end of the cut that comes next, under POSES: the control leads it there straight,
+ * turned evenly about one direction. The frame of the tool has its origin in the tip and its Z from the spindle
+ * to the tip; its X is that of the machine frame, laid across, where all axes are at zero. */
+#define POST_EVENT_POSE 45u
+/* 3 numbers: The tip, mm, machine frame. */
+#define POST_AT_POSE_ORIGIN 0u
+/* 4 numbers: How the frame is turned against the machine's: a unit quaternion, the scalar first. */
+#define POST_AT_POSE_QUATERNION 3u
+/* 3 numbers: The same as a turn about its own direction, radians. */
+#define POST_AT_POSE_ROTATION 7u
+/* 3 numbers: The same as turns about Z, then about the new Y, then about the new X, degrees. */
+#define POST_AT_POSE_ANGLES 10u
 /* generated: end */
 
 /* Helpers. None of them reads past what an event or a setup says that it has. */

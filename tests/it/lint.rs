@@ -23,7 +23,7 @@ fn linted(program: &str, more: &str, words: &[&str]) -> (TempDir, i32, Value) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("part.nc"), program).unwrap();
     let machine = format!(
-        "extends = \"vmc\"\nname = \"mine\"\n[workpiece]\nmount = [0, 0, -50]\n[tools.1]\nlength = 100\n[tools.2]\nlength = 120\n{more}"
+        "extends = \"vmc\"\nname = \"mine\"\n[workpiece]\nmount = [0, 0, -50]\n[tools.1]\nlength = 100\n[tools.2]\nlength = 120\n[tools.3]\nlength = 120\n{more}"
     );
     fs::write(folder.path().join("mine.toml"), machine).unwrap();
     let mut all = vec![

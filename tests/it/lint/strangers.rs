@@ -29,7 +29,7 @@ const SHARED: [Stranger; 7] = [
     stranger("data/nc/nxpost_dmc100_millplus_mm.ptp", &["-m", "dmu50", "--tool-length", "100"]),
     stranger(
         "data/nc/nxpost_dmu70evo_840d_in.ptp",
-        &["-m", "nutating-head", "--tool-length", "100"],
+        &["-m", "nutating-head", "--dialect", "siemens", "--tool-length", "100"],
     ),
     stranger("data/nc/nxpost_mori_nmv5000_out.txt", &["-m", "bc-trunnion", "--tool-length", "100"]),
     stranger("data/nc/siemens_ElMoe_keychain.mpf", &["-m", "vmc", "--dialect", "siemens"]),

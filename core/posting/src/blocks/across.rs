@@ -179,7 +179,7 @@ impl<'a> AcrossChoice<'a> {
         machine: &Machine,
         solver: &'t Solver,
     ) -> Option<Trials<'t>> {
-        self.equip(machine, solver).then(|| Trials {
+        self.equip(machine, solver).then_some(Trials {
             bodies: &mut *self.bodies,
             solver,
             drives: &self.drives,

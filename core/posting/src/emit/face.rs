@@ -72,7 +72,8 @@ impl<'a> EmitStage<'a> {
     /// Refuses to wait for other channels in the mode.
     pub(super) fn refuse_wait_on_face(&self, line: u64, mark: u32) {
         if self.face.on {
-            let message = format!("mark {mark} of SYNC stands inside polar or cylinder interpolation");
+            let message =
+                format!("mark {mark} of SYNC stands inside polar or cylinder interpolation");
             let help = "let the CAM system put it between operations";
             self.findings.at(line, Diagnostic::error("wait", message).help(help));
         }

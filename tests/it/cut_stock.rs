@@ -145,7 +145,7 @@ fn a_shank_may_be_where_edges_were_on_the_same_line() {
     let thick = "cutter = [[0, 5], [7, 5], [7, 5.2], [40, 5.2]]\nedge = 7";
     let (_, said, clear) = proven(&machine("cut = true", thick), &program(""), &[]);
     assert!(!clear);
-    assert_contains(&said, &["of shank T1"]);
+    assert_contains(&said, &["stock hits shank T1"]);
 }
 
 /// A ring about the nose of the spindle, 10 mm above the tip of the second tool.

@@ -90,7 +90,9 @@ fn each_rule_is_told_at_its_line_and_a_good_program_breaks_none() {
 /// Where the stock is known it is proven what a rapid hits, and not guessed.
 #[test]
 fn with_bodies_what_is_proven_stands_in_the_place_of_what_is_guessed() {
-    let deep = GOOD.replace("Z2.\nG1 Z-5. F300.\nX40.", "Z2.\nG0 Z-5.\nG1 X40. F300.");
+    // The tool that has a body.
+    let deep = GOOD.replace("T2 M6", "T3 M6").replace("G43 H2", "G43 H3");
+    let deep = deep.replace("Z2.\nG1 Z-5. F300.\nX40.", "Z2.\nG0 Z-5.\nG1 X40. F300.");
     let bodies = "cutter = [[0, 3], [60, 3]]\n[stock]\nblock = [[3, 3, -20], [57, 37, 0]]\n";
     let (_folder, code, found) = linted(&deep, bodies, &[]);
     assert_eq!(code, 1);

@@ -143,13 +143,18 @@ fn between_the_words_the_tool_keeps_to_the_chords_and_the_feed_is_that_of_the_ma
         let stands = blocks(&plain, &names, &[]);
         let wanted: Vec<V> = path.iter().map(|place| at(*place)).collect();
         let begins = program.lines().position(|line| unnumbered(line) == on).unwrap();
+        let inside = program.lines().skip(begins).position(|line| unnumbered(line) == off);
+        let ends = begins + inside.unwrap();
         let depth = |block: &post_testruns::read_back::Block| {
             model.pose(&block.words, LENGTH).tip.xy().norm()
         };
         let mut looked = 0;
         for pair in stands.windows(2) {
             let [from, to] = pair else { unreachable!() };
-            if to.line <= begins || depth(from) > radius + 0.01 || depth(to) > radius + 0.01 {
+            if !(begins..ends).contains(&(to.line - 1))
+                || depth(from) > radius + 0.01
+                || depth(to) > radius + 0.01
+            {
                 continue;
             }
             looked += 1;

@@ -555,7 +555,7 @@ fn forms_of_autodesk_and_catia() {
         assert!(parse_record(wrong).is_err(), "{wrong}");
     }
     same(Statement::Milling, &["MODE/MILL", "MODE / mill"]);
-    assert_eq!(read("MODE/TURN").usage(), WordUsage::Refused);
+    assert_eq!(read("MODE/TURN").usage(), WordUsage::Used);
     same(Statement::SetOut([0.0, 1.0, 0.0]), &["INDIRV/0,1,0", "INDIRV/ 0.,1.,0."]);
     assert_eq!(read("INDIRV/V1").usage(), WordUsage::Refused);
     same(Statement::PartSurface(None), &["AUTOPS", "AUTOPS/"]);

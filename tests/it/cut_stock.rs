@@ -249,6 +249,25 @@ fn each_line_is_told_by_what_it_cuts() {
     assert!(deepest[0] > 5.5 && deepest[0] < 6.001 && deepest[1] > 5.999, "{deepest:?}");
 }
 
+/// A line that hits what is left is told as no clear one, and one that goes above it by how far.
+#[test]
+fn each_line_is_told_by_how_near_it_comes_to_what_is_left() {
+    let program = program("G0 X0. Y0.\nG0 Z-20.\nG0 X34.\nG0 Z5.");
+    let (folder, said, clear) =
+        proven(&machine("cut = true", END_MILL), &program, &["--csv", "lines.csv"]);
+    assert!(!clear, "{said}");
+    let text = fs::read_to_string(folder.path().join("lines.csv")).unwrap();
+    let clear_by = |wanted: &str| -> f64 {
+        let line = program.lines().position(|line| line == wanted).unwrap() + 1;
+        let row = text.lines().find(|row| row.starts_with(&format!("{line},"))).unwrap();
+        row.split(',').nth(1).unwrap().parse().unwrap()
+    };
+    assert_eq!(clear_by("G0 X34."), 0.0, "{text}");
+    // The tip 5 mm above the block, before anything is cut.
+    let above = clear_by("G0 X-20. Y-13.");
+    assert!(above > 4.7 && above < 5.001, "{above}");
+}
+
 /// A cutter that stands cuts nothing, whether what it cuts would be taken from the stock or not.
 #[test]
 fn a_cutter_that_stands_is_told_in_any_stock() {

@@ -153,6 +153,8 @@ pub(super) struct CutStock {
     began: Volume,
     rows: Vec<PairRow>,
     distances: u64,
+    /// On the motion that was taken last nothing that is held against what is left came nearer to it, mm.
+    clear_by: f64,
 }
 
 /// The tool in the spindle.
@@ -281,6 +283,7 @@ impl CutStock {
             began: before,
             rows,
             distances,
+            clear_by: f64::INFINITY,
         })
     }
 
@@ -381,6 +384,7 @@ impl CutStock {
 
     /// Takes a motion: what does not cut is held against what is left, and what cuts takes its part of it.
     pub fn motion(&mut self, against: &Against<'_>) -> Taken {
+        self.clear_by = f64::INFINITY;
         let spindle = &against.motion.state.spindle;
         if matches!(spindle, SpindleState::Surface { .. }) {
             // A part that turns may be anywhere.
@@ -523,6 +527,7 @@ impl CutStock {
         let (verdict, place) = match found {
             Found::Clear(by) => {
                 row.clear_by = row.clear_by.min(by);
+                self.clear_by = self.clear_by.min(by);
                 return true;
             }
             Found::Hits(place) => (Verdict::Hits, place),
@@ -530,6 +535,7 @@ impl CutStock {
         };
         let Place { joints, at_most, point } = place;
         row.faults += 1;
+        self.clear_by = 0.0;
         let worse = row
             .fault
             .as_ref()
@@ -540,6 +546,11 @@ impl CutStock {
             row.fault = Some(Fault { verdict, line, joints, at_most, keep, point });
         }
         false
+    }
+
+    /// No body that is held against what is left came nearer to it on the last motion, mm; none where nothing was held.
+    pub fn clear_by(&self) -> Option<f64> {
+        Some(self.clear_by).filter(|by| by.is_finite())
     }
 
     /// What came of it: rows of the pairs, distances that were computed, what is left.

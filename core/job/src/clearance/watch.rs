@@ -266,7 +266,9 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             }
         });
         if let Some((hear, _)) = &mut self.told {
-            hear(&Heard { line, clear_by: nearest, chip });
+            let left = self.stock.as_ref().and_then(CutStock::clear_by);
+            let clear_by = nearest.into_iter().chain(left).reduce(f64::min);
+            hear(&Heard { line, clear_by, chip });
         }
         if stands {
             self.tell_standstill(line);

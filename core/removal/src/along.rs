@@ -21,6 +21,9 @@ const MOST_PIECES: u64 = 1 << 11;
 /// Pieces of a cut; of what is longer nothing is known any more for certain.
 const MOST_STEPS: u64 = 1 << 17;
 
+/// The same where each axis goes for itself, as at rapid, and a box of axis values is gone through.
+const MOST_STEPS_APART: u64 = 1 << 11;
+
 /// What a body sweeps is looked at at once on ways no longer than so many times its radius.
 const LONGEST: f64 = 4.0;
 
@@ -106,6 +109,7 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
         taken += field.cut_standing(cutter, ends, end, None);
     }
     let step = field.cell().max();
+    let most = if way.independent { MOST_STEPS_APART } else { MOST_STEPS };
     let mut waiting: Vec<Piece> = way.whole().into_iter().collect();
     let mut lost = waiting.is_empty();
     let (mut count, mut before) = (0, None);
@@ -117,7 +121,7 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
         };
         let reach = tool.reach(&at, &piece);
         let fine = reach <= step;
-        let halves = match fine || count > MOST_STEPS {
+        let halves = match fine || count > most {
             true => None,
             false => piece.halves(way, &at, tool.view.widest(&piece).map_or(0, |(axis, _)| axis)),
         };

@@ -36,7 +36,7 @@ def test_threads(verb: Verb, folder: Path) -> None:
     first = made(folder, verb)
     if tool("taskset"):
         assert made(folder, verb, before=["taskset", "-c", "0"]) == first
-    if verb.name not in ("read", "convert", "diff"):
+    if verb.name not in ("read", "convert", "diff", "lint"):
         for count in ("1", "2", "7"):
             assert made(folder, verb, "-j", count) == first, count
 

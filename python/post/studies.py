@@ -71,7 +71,7 @@ class Study:
         return f"<post.Study of {len(self)} jobs: {told}>"
 
     def to_arrow(self) -> pyarrow.Table:
-        """The table for pyarrow, which the extra ``post[arrow]`` installs."""
+        """The table for pyarrow, which the extra ``nc-post[arrow]`` installs."""
         import pyarrow
         import pyarrow.parquet
 

@@ -333,6 +333,6 @@ fn the_arrays_that_python_names_are_those_of_blocks() {
     let there = fs::read_to_string(path).unwrap();
     assert!(
         there == text,
-        "{path} is stale: run UPDATE_GUIDE=1 cargo test -p post --test it guides"
+        "{path} is stale: run UPDATE_GUIDE=1 cargo test -p nc-post --test it guides"
     );
 }

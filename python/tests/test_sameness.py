@@ -1,6 +1,7 @@
 """The same bytes of every verb that writes, whatever the machine, the shell and the folder are like."""
 
 import os
+import shlex
 import subprocess
 from pathlib import Path
 
@@ -160,16 +161,17 @@ def test_rounding_mode(mode: str, folder: Path, tmp_path: Path) -> None:
 
 
 @EACH
-def test_debug_and_release(verb: Verb, folder: Path) -> None:
-    """The other build of the same sources, which POST_OTHER_COMMAND names: that beside this one may be of another day."""
-    there = os.environ.get("POST_OTHER_COMMAND", "")
+def test_another_build(verb: Verb, folder: Path) -> None:
+    """A build of the same sources that POST_OTHER_COMMAND names (that beside this one may be of another day): release
+    beside debug, or one for another processor with what it is started by, `qemu-aarch64 -L /usr/aarch64-linux-gnu …/post`."""
+    there = shlex.split(os.environ.get("POST_OTHER_COMMAND", ""))
     if not there:
         pytest.skip("no other build is named")
     first = made(folder, verb)
     rows = folder / "rows.csv"
     own = rows.read_text() if verb.name == "batch" else ""
     cleared(folder, verb)
-    other = subprocess.run([there, *verb.arguments], cwd=folder, capture_output=True, text=True)
+    other = subprocess.run([*there, *verb.arguments], cwd=folder, capture_output=True, text=True)
     assert other.returncode == 0, other.stderr
     found = {**stand(folder, verb.written), "printed": other.stdout}
     if verb.name == "batch":

@@ -26,6 +26,7 @@ mod course;
 mod cut_stock;
 mod cycle_time;
 mod dialects;
+mod dependencies;
 mod diff;
 mod drives;
 mod face;

@@ -45,7 +45,7 @@ pub struct ClearanceArguments {
     csv: Option<PathArg>,
 
     /// Writes what may be left of a stock that is cut (`[stock] cut = true`) as an STL file: closed, mm, as the CL file has
-    /// the part, exact to within a cell; `-` is standard output.
+    /// the part, exact to within a cell; `-` is standard output. Of several stocks each becomes a file of its own, FILE-NAME.
     #[arg(long, value_name = "FILE", value_parser = file())]
     stock_stl: Option<PathArg>,
 }
@@ -58,18 +58,18 @@ pub fn run(session: &Session, arguments: &ClearanceArguments) -> Result<(), Fail
     let mut found = clearance::clearance(session, &control, &request)?;
     let table = *csv == Some(PathArg::Standard);
     let printed = table
-        | match (&arguments.stock_stl, &found.left) {
-            (Some(path), Some(left)) => {
-                left.write_stl(session, path)?;
-                *path == PathArg::Standard
-            }
-            (Some(_), None) => {
+        | match (&arguments.stock_stl, found.left.as_slice()) {
+            (None, _) => false,
+            (Some(_), []) => {
                 let message = "there is no stock that is cut: no STL file is written";
                 let help = "[stock] of the machine file has its shape, and cut = true";
                 found.findings.push(Diagnostic::error("clearance-body", message).help(help));
                 false
             }
-            (None, _) => false,
+            (Some(path), left) => {
+                clearance::write_stl(left, session, path)?;
+                *path == PathArg::Standard
+            }
         };
     terminal::print_beside(session, &clearance::text::text(&found), printed);
     let (errors, warnings): (Vec<_>, Vec<_>) =

@@ -466,7 +466,7 @@ fn check_tells_all_that_clearance_refuses() {
         format!("extends = \"vmc\"\nname = \"a\"\n[stock]\n{block}cut = true\nresolution = 99\n");
     fs::write(folder.path().join("m.toml"), text).unwrap();
     let run = post_in(folder.path(), &["check", "m.toml"]);
-    assert_contains(&run.err, &["[stock] resolution is 99 mm, and the stock 40 mm thick"]);
+    assert_contains(&run.err, &["resolution of stock is 99 mm, and it is 40 mm thick"]);
     // And that ways would go through a part that is not drawn.
     fs::write(
         folder.path().join("m.toml"),

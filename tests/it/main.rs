@@ -76,6 +76,7 @@ mod robot_programs;
 mod robots;
 mod rotary_way;
 mod settings;
+mod several_stocks;
 mod shells;
 #[cfg(unix)]
 mod signals;

@@ -165,13 +165,11 @@ impl Proof {
         self
     }
 
-    /// What the first pair of bodies of these kinds keeps; none where there is none.
-    pub fn rules(&self, kinds: [BodyKind; 2]) -> Option<Rules> {
-        let [one, other] = kinds;
-        let mut pairs = self.pairs.iter();
-        let pair = pairs.find(|pair| {
-            let own = pair.result.bodies.map(|place| self.bodies[place].kind);
-            own == [one, other] || own == [other, one]
+    /// What the first pair of bodies keeps that `are` meant, in either order; none where there is none.
+    pub fn rules_of(&self, are: impl Fn(&Body, &Body) -> bool) -> Option<Rules> {
+        let pair = self.pairs.iter().find(|pair| {
+            let [one, other] = pair.result.bodies.map(|place| &self.bodies[place]);
+            are(one, other) || are(other, one)
         })?;
         Some(pair.rules.unwrap_or(self.rules))
     }

@@ -267,7 +267,7 @@ impl<'a> Conversion<'a> {
             report: &made.report,
             verification: Some(&made.held.found),
             clearance: None,
-            left: None,
+            left: &[],
             prediction: None,
             findings: &made.findings,
             job: "convert",

@@ -34,7 +34,7 @@ pub fn load(
     for solid in std::iter::once(&machine).chain(heads).flat_map(|machine| &machine.solids) {
         session.read_files().note("the solid", &solid.file);
     }
-    let given = machine.stock.iter().chain(&machine.fixtures);
+    let given = machine.stocks.iter().chain(&machine.fixtures);
     for body in given {
         if let GivenShape::File(file) = &body.shape {
             session.read_files().note("the body", file);

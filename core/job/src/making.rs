@@ -411,7 +411,7 @@ impl<'a> ProgramMaker<'a> {
             report: &outcome.report,
             verification: outcome.verification.as_ref(),
             clearance: outcome.clearance.as_ref().map(ClearanceFound::summary),
-            left: outcome.clearance.as_ref().and_then(|proven| proven.left.as_ref()),
+            left: outcome.clearance.as_ref().map_or(&[], |proven| &proven.left),
             prediction: outcome.prediction.as_ref(),
             findings,
             job: match self.making.plan {

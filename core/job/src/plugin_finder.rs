@@ -8,7 +8,7 @@ use post_host::{
     ProgramAhead, ProgramSetup, ProgramTool, ProgramWord, Reason,
 };
 use post_machine::axis_words;
-use post_machine::description::{GivenBody, GivenOption, Machine, OptionValue, OutputUnits, Tcp};
+use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
 use post_machine::diagnostic::{self, Diagnostic, SourcePlace, nearest};
 use post_plugin::{Accuracy, Tolerance, Units, Value};
 use post_posting::ProgramPreview;
@@ -198,7 +198,7 @@ pub fn dialect_knowing(
                 })
                 .collect(),
             // Where the tool goes stands for a raw part that nobody has described.
-            extents: machine.stock.as_ref().and_then(GivenBody::extents).or(ahead.extents),
+            extents: machine.stock_extents().or(ahead.extents),
             time: ahead.time_s,
         }),
     };

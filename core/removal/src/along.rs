@@ -30,10 +30,19 @@ const LONGEST: f64 = 4.0;
 /// The nearest approach is known to this share of it: on a line, and in a box that axes span which go for themselves.
 const CLOSE: [f64; 2] = [0.8, 0.5];
 
-/// A body of revolution on the last link of a machine, and a field on its first.
+/// Where a field is on a machine.
+#[derive(Clone, Copy, Debug)]
+pub struct Seat {
+    /// The link that it hangs on: 0 carries the part, n is what follows the nth axis of the chain.
+    pub link: usize,
+    /// From its frame to that of the machine, all axes at zero.
+    pub frame: Placement,
+}
+
+/// A body on one link of a machine, and a field on another.
 #[derive(Clone, Debug)]
 pub struct Mounted {
-    /// The frame of the field on the link of the part.
+    /// The frame of the field on its link.
     field: Placement,
     view: View,
     /// Where it begins, mm, and along which unit vector it goes on, machine frame, all axes at zero.
@@ -44,22 +53,23 @@ impl Mounted {
     /// A body on a link of its own, all of it within `radius` of `centre`, mm, machine frame, all axes at zero.
     pub fn on_link(
         (axes, link): (&[Joint], usize),
-        field: Placement,
+        field: &Seat,
         (centre, radius): (Vector3<f64>, f64),
     ) -> Self {
-        let view = View::new(axes, 0, link, centre, radius);
-        Self { field, view, at_zero: ToolPose { tip: centre, axis: Vector3::z() } }
+        let view = View::new(axes, field.link, link, centre, radius);
+        let at_zero = ToolPose { tip: centre, axis: Vector3::z() };
+        Self { field: field.frame, view, at_zero }
     }
 
-    /// A body that begins at `at_zero`, all of it within `radius` of `centre`, mm, machine frame, all axes at zero.
+    /// A body of revolution on the last link that begins at `at_zero`, all of it within `radius` of `centre`, mm, machine
+    /// frame, all axes at zero.
     pub fn new(
         axes: &[Joint],
-        field: Placement,
+        field: &Seat,
         at_zero: ToolPose,
-        (centre, radius): (Vector3<f64>, f64),
+        sphere: (Vector3<f64>, f64),
     ) -> Self {
-        let view = View::new(axes, 0, axes.len(), centre, radius);
-        Self { field, view, at_zero }
+        Self { at_zero, ..Self::on_link((axes, axes.len()), field, sphere) }
     }
 
     /// Where its link stands in the frame of the field.

@@ -222,10 +222,10 @@ P.parts.build = (machine) => {
   // What is left of the stock beside the part: where that is cut into, and where something is left on it.
   const { left } = P.m.report.tables;
   if (left && !machine.shapes) {
-    const [over, ...place] = [...left.columns.values()].map(({ values }) => values);
+    const [body, over, ...place] = [...left.columns.values()].map(({ values }) => values);
     const corner = (row) => place.map((values) => values[row]);
-    const tone = (far) => (far < 0 ? P.GOUGE : far > 0 ? P.REST : of(0));
-    for (let row = 0; row < left.rows; row += 3) face(0, 1 + tone(over[row]), corner(row), corner(row + 1), corner(row + 2));
+    const tone = (far, body) => (far < 0 ? P.GOUGE : far > 0 ? P.REST : of(body));
+    for (let row = 0; row < left.rows; row += 3) face(body[row], 1 + tone(over[row], body[row]), corner(row), corner(row + 1), corner(row + 2));
   }
 
   // Boxes of travel: where the slides of the tool may bring the tip, and those of the work the part's origin.

@@ -54,10 +54,10 @@ impl ToolShape<'_> {
 /// that cannot be had is an error.
 pub(super) fn of_machine(machine: &Machine, findings: &mut Vec<Diagnostic>) -> Vec<Body> {
     let mut bodies = Vec::new();
-    let given = machine.stock.iter().map(|body| (BodyKind::Stock, body));
+    let given = machine.stocks.iter().map(|body| (BodyKind::Stock, body));
     let given = given.chain(machine.fixtures.iter().map(|body| (BodyKind::Fixture, body)));
     for (kind, given) in given {
-        if let Some(shape) = given_shape(machine, kind, given, findings) {
+        if let Some(shape) = given_shape(machine, given, findings) {
             bodies.push(Body { name: given.name.clone(), kind, link: given.link, shape });
         }
     }
@@ -118,26 +118,25 @@ pub(super) fn of_tool(
     bodies
 }
 
-/// From the frame of the stock to that of the machine, every axis at zero: it is where the CL file has it, turned about the
-/// part's Z, and where the part sits.
-pub fn of_stock(machine: &Machine) -> Placement {
-    Placement {
-        rotation: Rotation3::from_axis_angle(&Vector3::z_axis(), machine.turn).into_inner(),
-        shift: machine.mount,
+/// From the frame of a body's shape to that of the machine, every axis at zero: a stock may be where the CL file has it,
+/// turned about the part's Z, and where the part sits.
+pub fn placed(machine: &Machine, body: &GivenBody) -> Placement {
+    match body.in_part {
+        true => Placement {
+            rotation: Rotation3::from_axis_angle(&Vector3::z_axis(), machine.turn).into_inner(),
+            shift: machine.mount,
+        },
+        false => Placement::identity(),
     }
 }
 
-/// The shape of a fixture or of the stock, machine frame.
+/// The shape of a fixture or of a stock, machine frame.
 fn given_shape(
     machine: &Machine,
-    kind: BodyKind,
     given: &GivenBody,
     findings: &mut Vec<Diagnostic>,
 ) -> Option<Shape> {
-    let placed = match kind {
-        BodyKind::Stock => of_stock(machine),
-        _ => Placement::identity(),
-    };
+    let placed = placed(machine, given);
     let pieces = match &given.shape {
         GivenShape::Block([low, high]) => vec![Convex::block(*low, *high)],
         GivenShape::Cylinder { ends, radius } => {

@@ -123,10 +123,13 @@ impl<'a> ChoiceBodies<'a> {
             ends: [from, to],
             independent,
         };
-        // Where the tip goes in the part is the same whatever solution is taken, but for ways that the CL file does not have.
+        // Where the tip goes in the part is the same whatever solution is taken, but for ways that the CL file does not have, and
+        // for a stock that hangs elsewhere, which a cut may be in.
         let looks = |one: &Body, other: &Body| {
             let kinds = [one.kind, other.kind];
-            off_part || !(kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock))
+            let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
+            let stock = if one.kind == BodyKind::Stock { one } else { other };
+            off_part || !touches || rapid && stock.link != 0
         };
         let track = self.track(&ends[0]);
         track.stands = ends[1];

@@ -1,18 +1,19 @@
 //! The stock while the program cuts it: cutter, shank and holder against what is left.
 
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 use post_clearance::piece::Way;
 use post_clearance::placement::Placement;
 use post_clearance::proof::{Body, BodyKind, Fault, Proof, Verdict};
 use post_clearance::shape::Shape;
 use post_machine::check::number as decimals;
-use post_machine::description::{GivenShape, Machine};
+use post_machine::description::{GivenBody, GivenShape, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joint;
 use post_readback::{Motion, SpindleState};
-use post_removal::along::{self, Found, Mounted, Place, Watched};
+use post_removal::along::{self, Found, Mounted, Place, Seat, Watched};
 use post_removal::been::Been;
 use post_removal::chip::Chip;
 use post_removal::compare::{Compared, Nearness, surface_of};
@@ -20,7 +21,7 @@ use post_removal::field::{Cutter, Field, Volume};
 use post_removal::mesh::Triangle;
 use post_removal::profile::{ToolPose, between};
 
-use super::bodies::{ToolShape, closed_mesh, unusable};
+use super::bodies::{ToolShape, closed_mesh, placed, unusable};
 use super::pair_row::PairRow;
 use super::tool_cut::ToolCut;
 use crate::failure::Failure;
@@ -33,20 +34,26 @@ const WITHIN: f64 = 0.01;
 /// What is left of a stock behind a program.
 #[derive(Clone, Debug)]
 pub struct StockLeft {
+    /// What tables call it: `stock`, or `stock NAME`.
+    pub name: String,
+    /// What it hangs on: 0 is the part, n what follows the nth axis of the chain.
+    pub link: usize,
+    /// From the frame of its shape to that of the machine, all axes at zero.
+    pub placed: Placement,
     /// Volume before the first cut.
     pub before: Volume,
     /// Volume that is left.
     pub left: Volume,
     /// Edges of a cell, mm.
     pub cell: Vector3<f64>,
-    /// What it is against the part that is to become of it, places in the part frame.
+    /// What it is against the part that is to become of it, places in the frame of its shape.
     pub part: Option<Compared>,
     /// What each tool takes of it.
     pub cuts: Vec<ToolCut>,
     field: Field,
     /// The part, in the frame of the field, and its surface.
     wanted: Option<(Field, Shape)>,
-    /// The low corner of the field, part frame, mm.
+    /// The low corner of the field, frame of the shape, mm.
     low: Vector3<f64>,
 }
 
@@ -64,28 +71,52 @@ const MOST_PIECES: usize = 64;
 /// An STL file of what is left.
 const SOLID: Role = Role { what: "stock", remedy: "name another file with --stock-stl" };
 
+/// Writes the surface of what may be left of each stock as an STL file, binary, mm, in the frame of its shape: the part
+/// frame as the CL file has it, if nothing else is said. It is closed, and as exact as a cell; edges are bevelled by half
+/// of one. Of several each has its name in that of the file: `left-NAME.stl`.
+///
+/// # Errors
+/// A file cannot be written, or several are to go where one fits.
+pub fn write_stl(stocks: &[StockLeft], session: &Session, path: &PathArg) -> Result<(), Failure> {
+    if *path == PathArg::Standard && stocks.len() > 1 {
+        let message = "several stocks are cut: standard output takes what is left of one";
+        let help = "--stock-stl FILE.stl; each becomes a file of its own, FILE-NAME.stl";
+        return Err(Diagnostic::error("clearance-body", message).help(help).into());
+    }
+    let own = |left: &StockLeft| match stocks.len() {
+        1 => path.clone(),
+        _ => path.map(|path| left.own_path(path)),
+    };
+    let paths: Vec<PathArg> = stocks.iter().map(own).collect();
+    let targets: Vec<_> = paths.iter().map(|path| (SOLID, path)).collect();
+    let mut files = AtomicFile::create(session, &targets)?;
+    for (file, left) in files.iter_mut().zip(stocks) {
+        let mut written = Ok(());
+        left.facets(&mut |bytes| {
+            if written.is_ok() {
+                written = file.write_bytes(bytes);
+            }
+        });
+        written?;
+    }
+    AtomicFile::finish(session, files)?;
+    Ok(())
+}
+
 impl StockLeft {
-    /// Writes the surface of what may be left as an STL file, binary, mm, part frame as the CL file has it. It is closed, and
-    /// as exact as a cell; edges are bevelled by half of one.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn write_stl(&self, session: &Session, path: &PathArg) -> Result<(), Failure> {
-        let mut files = AtomicFile::create(session, &[(SOLID, path)])?;
-        for file in &mut files {
-            let mut written = Ok(());
-            self.facets(&mut |bytes| {
-                if written.is_ok() {
-                    written = file.write_bytes(bytes);
-                }
-            });
-            written?;
+    /// The file beside `path` that has its name.
+    fn own_path(&self, path: &Path) -> PathBuf {
+        let name = self.name.trim_start_matches("stock ");
+        let mut file = path.file_stem().unwrap_or_default().to_owned();
+        file.push(format!("-{name}"));
+        if let Some(ending) = path.extension() {
+            file.push(".");
+            file.push(ending);
         }
-        AtomicFile::finish(session, files)?;
-        Ok(())
+        path.with_file_name(file)
     }
 
-    /// How far points of its surface, part frame, are from that of the part, mm: below zero inside of it, zero where that is
+    /// How far points of its surface, frame of its shape, are from that of the part, mm: below zero inside of it, zero where that is
     /// not known, for it is no farther than a cell. None where no part is given.
     pub(crate) fn over(&self) -> Option<impl FnMut(Vector3<f64>) -> f64> {
         let (part, surface) = self.wanted.as_ref()?;
@@ -102,7 +133,7 @@ impl StockLeft {
         })
     }
 
-    /// The same, in memory.
+    /// The STL file of its surface, in memory.
     pub(crate) fn stl(&self) -> Vec<u8> {
         let mut stl = Vec::new();
         self.facets(&mut |bytes| stl.extend_from_slice(bytes));
@@ -135,11 +166,13 @@ impl StockLeft {
 
 /// The stock, and the tool that cuts it.
 pub(super) struct CutStock {
+    name: String,
     axes: Vec<Joint>,
     field: Field,
-    /// The frame of the field on the link of the part, and its low corner in the part frame, mm.
-    frame: Placement,
+    /// Where the field is on the machine, and its low corner in the frame of the shape, mm.
+    seat: Seat,
     low: Vector3<f64>,
+    placed: Placement,
     /// The part that is to become of it, in the frame of the field, and its surface.
     part: Option<(Field, Shape)>,
     before: Volume,
@@ -217,11 +250,13 @@ pub(super) enum Taken {
 }
 
 impl CutStock {
-    /// The stock of a machine whose file says that it is cut.
-    pub fn new(machine: &Machine, findings: &mut Vec<Diagnostic>) -> Option<Self> {
-        let given = machine.stock.as_ref()?;
+    /// The stocks of a machine whose file says that they are cut.
+    pub fn all(machine: &Machine, findings: &mut Vec<Diagnostic>) -> Vec<Self> {
+        machine.stocks.iter().filter_map(|given| Self::new(machine, given, findings)).collect()
+    }
+
+    fn new(machine: &Machine, given: &GivenBody, findings: &mut Vec<Diagnostic>) -> Option<Self> {
         let cut = given.cut.as_ref()?;
-        let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), machine.turn).into_inner();
         let triangles = match &given.shape {
             GivenShape::File(file) => {
                 Some(closed_mesh(file, (&given.place, &given.name), findings)?)
@@ -243,11 +278,11 @@ impl CutStock {
         let finest = Field::finest(size);
         if resolution < finest {
             let why = format!(
-                "[stock] resolution {resolution} mm is finer than there is room for with a stock of its size"
+                "resolution {resolution} mm is finer than there is room for with a stock of its size"
             );
             let fits = libm::ceil(finest * 1e3) / 1e3;
             let help = format!("resolution = {} or more, mm", decimals(fits, 3));
-            findings.push(unusable("stock", (&why, &help), &given.place));
+            findings.push(unusable(&given.name, (&why, &help), &given.place));
             return None;
         }
         let field = match (&given.shape, triangles) {
@@ -263,16 +298,20 @@ impl CutStock {
             let surface = surface_of(&triangles)?;
             Some((Field::mesh(size, &triangles, resolution), surface))
         });
-        let frame = Placement { rotation: turn, shift: turn * low + machine.mount };
+        let placed = placed(machine, given);
+        let frame = Placement { shift: placed.point(low), ..placed };
+        let seat = Seat { link: given.link, frame };
         let axes = machine.axes.iter().map(|axis| axis.joint).collect();
         let (before, been) = (field.volume(), Been::new(&[]));
         let (tool, others) = (None, Vec::new());
         let (cuts, rows, distances) = (BTreeMap::new(), Vec::new(), 0);
         Some(Self {
+            name: given.name.clone(),
             axes,
             field,
-            frame,
+            seat,
             low,
+            placed,
             part,
             before,
             been,
@@ -287,23 +326,28 @@ impl CutStock {
         })
     }
 
-    /// A body is held against what is left here, and not by the proof against the whole stock.
+    /// A body is held against what is left of a stock, and not by the proof against all of it.
     pub fn holds_left(body: &Body) -> bool {
         let tool = matches!(body.kind, BodyKind::Holder | BodyKind::Cutter);
-        tool || body.shape.pieces() <= MOST_PIECES
+        tool || body.kind != BodyKind::Stock && body.shape.pieces() <= MOST_PIECES
+    }
+
+    /// A body of the proof is this stock as it is before the first cut.
+    pub fn is(&self, body: &Body) -> bool {
+        body.kind == BodyKind::Stock && body.name == self.name
     }
 
     /// Takes the bodies of a proof besides those of the tool that it holds against the stock.
     pub fn hold(&mut self, proof: &Proof) {
         let bodies = proof.bodies().iter().enumerate();
-        let Some((stock, _)) = bodies.clone().find(|(_, body)| body.kind == BodyKind::Stock) else {
+        let Some((stock, _)) = bodies.clone().find(|(_, body)| self.is(body)) else {
             return;
         };
         for (place, body) in bodies.filter(|(_, body)| Self::holds_left(body)) {
             let pair = [stock.min(place), stock.max(place)];
             let Some(rules) = proof.rules_between(pair) else { continue };
             let sphere = body.shape.sphere();
-            let mounted = Mounted::on_link((&self.axes, body.link), self.frame, sphere);
+            let mounted = Mounted::on_link((&self.axes, body.link), &self.seat, sphere);
             let row = self.row(body.name.clone());
             let watched = Watched::of_pieces(mounted, body.shape.convex().to_vec());
             let keep = [rules.keep, rules.rapid];
@@ -337,11 +381,11 @@ impl CutStock {
         let mut parts = Vec::new();
         for (kind, what, counted, at_zero, profile) in bodies {
             let shape = Shape::turned(&profile, at_zero.tip, at_zero.axis);
-            let rules = proof.rules([BodyKind::Stock, counted]);
+            let rules = proof.rules_of(|one, other| self.is(one) && other.kind == counted);
             let (Some(rules), Some(shape)) = (rules, shape) else { continue };
             let yields = kind != PartKind::Holder;
             let keep = [if yields { 0.0 } else { rules.keep }, rules.rapid];
-            let mounted = Mounted::new(&self.axes, self.frame, at_zero, shape.sphere());
+            let mounted = Mounted::new(&self.axes, &self.seat, at_zero, shape.sphere());
             let row = self.row(format!("{what} T{number}"));
             let body = Cutter::vague(&profile);
             let watched = Watched::new(mounted.clone(), profile);
@@ -349,7 +393,7 @@ impl CutStock {
             parts.push(Part { kind, held, body, mounted });
         }
         let cutter = Shape::turned(&edges, at_tip.tip, up).map(|shape| {
-            let mounted = Mounted::new(&self.axes, self.frame, at_tip, shape.sphere());
+            let mounted = Mounted::new(&self.axes, &self.seat, at_tip, shape.sphere());
             let cutter = if tool.is_drawn() { Cutter::new(&edges) } else { Cutter::vague(&edges) };
             (cutter, mounted)
         });
@@ -368,7 +412,7 @@ impl CutStock {
     }
 
     fn row(&mut self, other: String) -> usize {
-        let names = ["stock".to_owned(), other];
+        let names = [self.name.clone(), other];
         if let Some(place) = self.rows.iter().position(|row| row.names == names) {
             return place;
         }
@@ -541,7 +585,7 @@ impl CutStock {
             .as_ref()
             .is_none_or(|fault| verdict == Verdict::Hits && fault.verdict != Verdict::Hits);
         if worse {
-            let point = self.frame.point(point);
+            let point = self.seat.frame.point(point);
             let line = against.motion.line;
             row.fault = Some(Fault { verdict, line, joints, at_most, keep, point });
         }
@@ -563,6 +607,9 @@ impl CutStock {
             compared
         });
         let left = StockLeft {
+            name: self.name,
+            link: self.seat.link,
+            placed: self.placed,
             part,
             before: self.before,
             left: self.field.volume(),

@@ -17,7 +17,7 @@ mod watch;
 use std::path::{Path, PathBuf};
 
 use post_clearance::proof::{Body, BodyKind, Proof, Rules};
-use post_machine::description::{GivenShape, Machine};
+use post_machine::description::{GivenBody, GivenShape, Machine};
 use post_machine::diagnostic::{Diagnostic, Severity, Short};
 use post_machine::kinematics::{Joint, Joints};
 use post_readback::course::cl::ClSettings;
@@ -29,13 +29,13 @@ use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg, Role};
 use crate::nc_program::{self, NcControl, ProgramFile, ProgramText, open_as};
 use crate::session::Session;
-pub(crate) use bodies::{of_stock, solid_name};
+pub(crate) use bodies::{placed, solid_name};
 
 use bodies::link_name;
 use watch::ClearanceWatch;
 
 pub(crate) use choice::ChoiceBodies;
-pub use left::StockLeft;
+pub use left::{StockLeft, write_stl};
 pub use line_row::LineRow;
 pub use of_job::of_job;
 pub use pair_row::PairRow;
@@ -71,8 +71,8 @@ pub struct ClearanceFound {
     pub distances: u64,
     /// What is not clear, and what could not be read; errors and warnings.
     pub findings: Vec<Diagnostic>,
-    /// What is left of a stock that gets less by what is cut.
-    pub left: Option<StockLeft>,
+    /// What is left of each stock that gets less by what is cut.
+    pub left: Vec<StockLeft>,
 }
 
 impl ClearanceFound {
@@ -135,12 +135,12 @@ pub fn prove(
 ) -> Result<ClearanceFound, Failure> {
     let machine = &control.machine;
     let mut findings = Vec::new();
-    let (bodies, stock) = described(machine, &mut findings);
+    let (bodies, stocks) = described(machine, &mut findings);
     let tools = facts.tools.iter();
     let diameters = tools.filter_map(|tool| Some((tool.number, tool.diameter?))).collect();
     let cuts = Cuts { diameters, fastest: facts.fastest };
     let mut run = ProgramRun::new(control.program_with_rapids(name, text)?);
-    let mut watch = ClearanceWatch::new(control, bodies, cuts, hear, stock);
+    let mut watch = ClearanceWatch::new(control, bodies, cuts, hear, stocks);
     while let Some(done) = run.block() {
         for what in done.iter() {
             watch.take(what);
@@ -170,24 +170,24 @@ pub fn prove(
     Ok(found)
 }
 
-/// The bodies of a machine and the stock that is cut, as they are proven. What is wrong with them is said, once.
+/// The bodies of a machine and the stocks that are cut, as they are proven. What is wrong with them is said, once.
 fn described(
     machine: &Machine,
     findings: &mut Vec<Diagnostic>,
-) -> (Vec<Body>, Option<left::CutStock>) {
+) -> (Vec<Body>, Vec<left::CutStock>) {
     findings.extend(names::unknown(machine));
     let bodies = bodies::of_machine(machine, findings);
     let mut again = Vec::new();
-    let stock = left::CutStock::new(machine, &mut again);
-    // What is wrong with the body of the stock was said of it as a body.
+    let stocks = left::CutStock::all(machine, &mut again);
+    // What is wrong with the body of a stock was said of it as a body.
     again.retain(|finding| !findings.contains(finding));
     findings.append(&mut again);
-    (bodies, stock)
+    (bodies, stocks)
 }
 
 /// Ways between passes go past bodies: a part that nobody has drawn would be in no way's way.
 pub(crate) fn without_stock(machine: &Machine) -> Option<Diagnostic> {
-    if !machine.clearance.shortens_ways() || machine.stock.is_some() {
+    if !machine.clearance.shortens_ways() || !machine.stocks.is_empty() {
         return None;
     }
     let message = "ways between passes are to be shortened ([clearance] low_retracts, link), and no [stock] is drawn: they would go through the part";
@@ -199,7 +199,7 @@ pub(crate) fn without_stock(machine: &Machine) -> Option<Diagnostic> {
 /// The STL files of a machine's bodies, whether they are there or not.
 pub fn files(machine: &Machine) -> impl Iterator<Item = &Path> {
     let given =
-        machine.stock.iter().chain(&machine.fixtures).filter_map(|body| match &body.shape {
+        machine.stocks.iter().chain(&machine.fixtures).filter_map(|body| match &body.shape {
             GivenShape::File(file) => Some(file),
             _ => None,
         });
@@ -223,20 +223,20 @@ fn without_body(machine: &Machine) -> Vec<String> {
             && machine.fixtures.iter().all(|body| body.link != *link)
     });
     let mut lacks: Vec<String> = bare.map(|link| link_name(machine, link)).collect();
-    if machine.stock.is_none() {
+    if machine.stocks.is_empty() {
         lacks.push("stock".to_owned());
     }
     lacks
 }
 
-/// What is cut is taken from the stock of a machine.
+/// What is cut is taken from a stock of a machine.
 pub fn cuts_stock(machine: &Machine) -> bool {
-    machine.stock.as_ref().is_some_and(|stock| stock.cut.is_some())
+    machine.stocks.iter().any(|stock| stock.cut.is_some())
 }
 
 /// A machine file says something of bodies besides pictures.
 pub fn is_described(machine: &Machine) -> bool {
-    machine.stock.is_some()
+    !machine.stocks.is_empty()
         || !machine.fixtures.is_empty()
         || !machine.outlines.is_empty()
         || machine.clearance != Default::default()
@@ -258,14 +258,23 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
         findings.push(Diagnostic::warning("clearance-body", message).help(help));
     }
     findings.extend(outlines::of_tools(machine));
-    findings.extend(coarse_cells(machine));
-    if machine.stock.is_some()
-        && !cuts_stock(machine)
+    findings.extend(machine.stocks.iter().filter_map(coarse_cells));
+    if machine.stocks.iter().any(|stock| stock.cut.is_none())
         && machine.outlines.iter().any(|outline| !outline.cutter.is_empty())
     {
-        let message = "the stock counts as it is before the first cut, whatever is cut of it";
-        let help = "cut = true under [stock] takes from it what the drawn cutters remove";
-        findings.push(Diagnostic::warning("clearance-body", message).help(help));
+        let whole = machine.stocks.iter().filter(|stock| stock.cut.is_none());
+        findings.extend(whole.map(|stock| {
+            let what = match stock.name.as_str() {
+                "stock" => "the stock",
+                name => name,
+            };
+            let message =
+                format!("{what} counts as it is before the first cut, whatever is cut of it");
+            let table = stock.name.replace(' ', ".");
+            let help =
+                format!("cut = true under [{table}] takes from it what the drawn cutters remove");
+            Diagnostic::warning("clearance-body", message).help(help)
+        }));
     }
     let mut joints = Joints::default();
     for (value, axis) in joints.iter_mut().zip(&machine.axes) {
@@ -285,16 +294,15 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
     findings
 }
 
-/// Cells that are larger than the stock is thick tell nothing of what is left of it.
-fn coarse_cells(machine: &Machine) -> Option<Diagnostic> {
-    let stock = machine.stock.as_ref()?;
+/// Cells that are larger than a stock is thick tell nothing of what is left of it.
+fn coarse_cells(stock: &GivenBody) -> Option<Diagnostic> {
     let resolution = stock.cut.as_ref()?.resolution?;
     let [low, high] = stock.extents()?;
     let thin = low.iter().zip(high).map(|(low, high)| high - low).fold(f64::INFINITY, f64::min);
     (resolution > thin).then(|| {
-        let (resolution, thin) = (Short(resolution), Short(thin));
+        let (name, resolution, thin) = (&stock.name, Short(resolution), Short(thin));
         let message = format!(
-            "[stock] resolution is {resolution} mm, and the stock {thin} mm thick: what is cut of it is not known"
+            "resolution of {name} is {resolution} mm, and it is {thin} mm thick: what is cut of it is not known"
         );
         let help = "a tenth of the smallest cutter, or leave it out: it follows from the size";
         Diagnostic::warning("clearance-body", message).at(stock.place.clone()).help(help)

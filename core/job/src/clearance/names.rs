@@ -32,14 +32,14 @@ fn is_called(machine: &Machine, body: &Body, name: &str) -> bool {
     body.name == name || kind == name || end || link_name(machine, body.link) == name
 }
 
-/// Names of pairs in `[clearance]` that nothing has: as a warning those of fixtures that are taken away.
+/// Names of pairs in `[clearance]` that nothing has: as a warning those of bodies that are taken away.
 pub(super) fn unknown(machine: &Machine) -> Vec<Diagnostic> {
     let known = |name: &str| {
         let of_tool = name.strip_prefix("holder T").or_else(|| name.strip_prefix("cutter T"));
         GENERAL.contains(&name)
             || of_tool.is_some_and(|number| number.parse::<u32>().is_ok())
             || machine.axes.iter().any(|axis| axis.name == name)
-            || machine.fixtures.iter().any(|body| body.name == name)
+            || machine.fixtures.iter().chain(&machine.stocks).any(|body| body.name == name)
     };
     let rules = &machine.clearance;
     let mut findings = Vec::new();
@@ -48,7 +48,7 @@ pub(super) fn unknown(machine: &Machine) -> Vec<Diagnostic> {
             let message = format!(
                 "{name} is taken away: what [clearance] says of the pair is without effect"
             );
-            let help = "leave the pair out as well, if the fixture does not come back";
+            let help = "leave the pair out as well, if the body does not come back";
             let warning = Diagnostic::warning("clearance-body", message).at(pair.place.clone());
             findings.push(warning.help(help));
         }
@@ -56,8 +56,9 @@ pub(super) fn unknown(machine: &Machine) -> Vec<Diagnostic> {
         for name in names.filter(|name| !known(name)) {
             let message = format!("[clearance] names {name}, and nothing is called so");
             let axes = machine.axes.iter().map(|axis| axis.name.as_str());
-            let fixtures = machine.fixtures.iter().map(|body| body.name.as_str());
-            let all: Vec<&str> = fixtures.chain(GENERAL).chain(axes).collect();
+            let own = machine.fixtures.iter().chain(machine.stocks.iter());
+            let own = own.map(|body| body.name.as_str()).filter(|name| *name != "stock");
+            let all: Vec<&str> = own.chain(GENERAL).chain(axes).collect();
             let help = format!("known are {}; holder T3 is that of tool 3", all.join(", "));
             let finding = Diagnostic::error("clearance-body", message).at(pair.place.clone());
             findings.push(finding.help(help));

@@ -21,7 +21,7 @@ fn lacking(machine: &Machine, outline: &ToolOutline) -> Vec<Diagnostic> {
     let drawn = !outline.cutter.is_empty();
     let listed = || machine.tool_table.as_ref()?.entry(number, number)?.total_length();
     let given = machine.tools.iter().any(|(known, _)| *known == number);
-    let cut = machine.stock.as_ref().is_some_and(|stock| stock.cut.is_some());
+    let cut = super::cuts_stock(machine);
     let mut findings = Vec::new();
     let mut tell = |message: String, help: &str| {
         findings.push(Diagnostic::warning("clearance-body", message).help(help));

@@ -20,17 +20,19 @@ pub struct ClearanceSummary {
     pub pairs: Vec<PairSummary>,
     /// What has no body, and was not looked at.
     pub without_body: Vec<String>,
-    /// What is left of a stock that is cut.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stock: Option<StockSummary>,
-    /// What each tool takes of it.
+    /// What is left of each stock that is cut.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub stocks: Vec<StockSummary>,
+    /// What each tool takes of each of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub cuts: Vec<CutSummary>,
 }
 
-/// What is left of the stock: of volumes no less and no more than this, mm³.
+/// What is left of a stock: of volumes no less and no more than this, mm³.
 #[derive(Clone, Debug, Serialize)]
 pub struct StockSummary {
+    /// What tables call it: `stock`, or `stock NAME`.
+    pub name: String,
     /// Before the first cut.
     pub before_mm3: [f64; 2],
     /// Behind the last.
@@ -43,9 +45,10 @@ pub struct StockSummary {
 
 impl StockSummary {
     pub(super) fn new(stock: &StockLeft) -> Self {
-        let StockLeft { before, left, cell, .. } = stock;
+        let StockLeft { name, before, left, cell, .. } = stock;
         let cut = [before.at_least - left.at_most, before.at_most - left.at_least];
         Self {
+            name: name.clone(),
             before_mm3: [before.at_least, before.at_most],
             left_mm3: [left.at_least, left.at_most],
             cut_mm3: cut.map(|volume| volume.max(0.0)),
@@ -65,11 +68,13 @@ impl StockSummary {
     }
 }
 
-/// What a tool takes of the stock.
+/// What a tool takes of a stock.
 #[derive(Clone, Debug, Serialize)]
 pub struct CutSummary {
     /// Its number.
     pub tool: u32,
+    /// What tables call the stock.
+    pub stock: String,
     /// How much of the stock it takes, mm³: no less and no more than this.
     pub volume_mm3: [f64; 2],
     /// How deep its deepest cut is, mm up from the tip.
@@ -87,7 +92,7 @@ pub struct CutSummary {
 }
 
 impl CutSummary {
-    fn new(cut: &ToolCut) -> Self {
+    fn new(cut: &ToolCut, stock: &str) -> Self {
         let known = |longest: &LongestAt| {
             let known = Some(*longest).filter(|longest| longest.line > 0);
             let extent = known.map(|LongestAt { extent, .. }| [extent.at_least, extent.at_most]);
@@ -99,6 +104,7 @@ impl CutSummary {
         let most = Some(cut.most).filter(|most| most.line > 0);
         Self {
             tool: cut.tool,
+            stock: stock.to_owned(),
             volume_mm3: volume(cut.volume),
             depth_mm,
             depth_line,
@@ -122,6 +128,12 @@ impl CutSummary {
         ];
         let cut = format!("{} mm³ cut", between(self.volume_mm3, 0));
         parts.into_iter().flatten().fold(cut, |told, part| told + &part)
+    }
+}
+
+impl StockLeft {
+    fn cut_summaries(&self) -> impl Iterator<Item = CutSummary> {
+        self.cuts.iter().map(|cut| CutSummary::new(cut, &self.name))
     }
 }
 
@@ -155,8 +167,8 @@ impl ClearanceFound {
             motions: self.motions,
             pairs: pairs.collect(),
             without_body: self.lacks.clone(),
-            stock: self.left.as_ref().map(StockSummary::new),
-            cuts: self.left.iter().flat_map(|left| left.cuts.iter().map(CutSummary::new)).collect(),
+            stocks: self.left.iter().map(StockSummary::new).collect(),
+            cuts: self.left.iter().flat_map(StockLeft::cut_summaries).collect(),
         }
     }
 }
@@ -173,12 +185,15 @@ impl ClearanceSummary {
         self.pairs.iter().filter_map(|pair| pair.clear_by_mm).min_by(f64::total_cmp)
     }
 
-    /// What is left of a stock that is cut, and what each tool takes of it: names and sentences.
+    /// What is left of stocks that are cut, and what each tool takes of them: names and sentences.
     pub fn stock_rows(&self) -> Vec<[String; 2]> {
-        let Some(stock) = &self.stock else { return Vec::new() };
-        let mut rows = vec![["stock left".to_owned(), stock.fact()]];
-        rows.extend(self.cuts.iter().map(|cut| [format!("tool {} takes", cut.tool), cut.fact()]));
-        rows
+        let several = self.stocks.len() > 1;
+        let left = self.stocks.iter().map(|stock| [format!("{} left", stock.name), stock.fact()]);
+        let takes = |cut: &CutSummary| {
+            let of = if several { format!(" of {}", cut.stock) } else { String::new() };
+            [format!("tool {} takes{of}", cut.tool), cut.fact()]
+        };
+        left.chain(self.cuts.iter().map(takes)).collect()
     }
 
     /// All of it in a sentence.

@@ -7,8 +7,8 @@ use super::{ClearanceFound, ClearanceSummary, CutSummary, Farthest};
 use crate::text::{at_least, number};
 use crate::text_table::{NamedValues, TextTable};
 
-/// What each tool takes of the stock.
-fn cut_table(cuts: &[CutSummary]) -> TextTable {
+/// What each tool takes of each stock.
+fn cut_table(cuts: &[CutSummary], stocks: usize) -> TextTable {
     let head = ["", "cut, mm³", "depth, mm", "line", "width, mm", "line", "most, mm³", "line"];
     let mut table = TextTable::headed(1, head);
     for cut in cuts {
@@ -19,7 +19,8 @@ fn cut_table(cuts: &[CutSummary]) -> TextTable {
         let [deep, deepest] = longest(cut.depth_mm, cut.depth_line, 3);
         let [wide, widest] = longest(cut.width_mm, cut.width_line, 3);
         let [most, on] = longest(cut.most_mm3, cut.most_line, 0);
-        let tool = format!("tool {}", cut.tool);
+        let of = if stocks > 1 { format!(", {}", cut.stock) } else { String::new() };
+        let tool = format!("tool {}{of}", cut.tool);
         table.row([tool, between(cut.volume_mm3, 0), deep, deepest, wide, widest, most, on]);
     }
     table
@@ -31,12 +32,12 @@ pub fn text(found: &ClearanceFound) -> String {
     rows.row("motions", found.motions);
     rows.row("pairs of bodies", found.pairs.len());
     rows.row("distances computed", found.distances);
-    let ClearanceSummary { stock, cuts, .. } = found.summary();
-    if let Some(stock) = stock {
-        rows.row("stock left, mm³", between(stock.left_mm3, 0));
+    let ClearanceSummary { stocks, cuts, .. } = found.summary();
+    for (stock, left) in stocks.iter().zip(&found.left) {
+        rows.row(format!("{} left, mm³", left.name), between(stock.left_mm3, 0));
         rows.row("cut of it, mm³", between(stock.cut_mm3, 0));
         rows.row("known to within, mm", number(stock.cell_mm, 3));
-        if let Some(part) = found.left.as_ref().and_then(|left| left.part.as_ref()) {
+        if let Some(part) = &left.part {
             let volume = |volume: Volume| between([volume.at_least, volume.at_most], 0);
             let far = |far: &Farthest| {
                 let range = between([far.at_least, far.at_most], 3);
@@ -58,7 +59,7 @@ pub fn text(found: &ClearanceFound) -> String {
     let mut text = rows.table();
     if !cuts.is_empty() {
         text.push('\n');
-        text.push_str(&cut_table(&cuts).text());
+        text.push_str(&cut_table(&cuts, stocks.len()).text());
     }
     if found.pairs.is_empty() {
         return text;

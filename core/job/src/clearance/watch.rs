@@ -51,8 +51,8 @@ pub(super) struct ClearanceWatch<'a, 'h> {
     fixed: Vec<Body>,
     cuts: Cuts,
     proof: Proof,
-    /// The stock, if it gets less by what is cut.
-    stock: Option<CutStock>,
+    /// Stocks that get less by what is cut.
+    stocks: Vec<CutStock>,
     /// The tool whose bodies are looked at, and its length, mm.
     tool: Option<(u32, Option<f64>)>,
     /// Where the tool has been since it was changed: another one would have been there before.
@@ -81,7 +81,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         fixed: Vec<Body>,
         cuts: Cuts,
         hear: Option<&'a mut Hearer<'h>>,
-        mut stock: Option<CutStock>,
+        mut stocks: Vec<CutStock>,
     ) -> Self {
         let found = ClearanceFound {
             pairs: Vec::new(),
@@ -89,17 +89,17 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             motions: 0,
             distances: 0,
             findings: Vec::new(),
-            left: None,
+            left: Vec::new(),
         };
         let proof = proof(&control.machine, fixed.clone());
-        stock.iter_mut().for_each(|stock| stock.hold(&proof));
+        stocks.iter_mut().for_each(|stock| stock.hold(&proof));
         Self {
             told: hear.map(|hear| (hear, proof.clone())),
             proof,
             control,
             fixed,
             cuts,
-            stock,
+            stocks,
             tool: None,
             been: Been::new(&[]),
             start: Start::default(),
@@ -128,7 +128,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 );
                 self.faults.push((*line, message, "put its blocks into the program"));
                 self.proof.forget();
-                self.stock.iter_mut().for_each(CutStock::forget);
+                self.stocks.iter_mut().for_each(CutStock::forget);
             }
             BlockEffect::Event { line, event: ProgramEvent::Cycle(call) }
                 if matches!(call.kind, CycleKind::BoreFine | CycleKind::BoreBack) =>
@@ -177,7 +177,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             self.faults.push((motion.line, message.to_owned(), help));
         }
         self.proof.forget();
-        self.stock.iter_mut().for_each(CutStock::forget);
+        self.stocks.iter_mut().for_each(CutStock::forget);
     }
 
     fn motion(&mut self, motion: &Motion) {
@@ -212,17 +212,21 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         let poses = goes(motion, way.independent);
         let been = rapid && poses.is_some_and(|poses| self.been.covers(None, poses));
         let spins = spins(motion);
-        // What does not turn cuts nothing: its cutter is held against the stock as any other body.
-        let cuts = been || !rapid && spins;
-        let lessens = self.stock.is_some();
+        // What does not turn cuts nothing: its cutter is held against the stock as any other body. Where it has been is known
+        // in the frame of the part, and of a stock that hangs elsewhere nothing follows from it.
+        let cuts = |stock: &Body| !rapid && spins || been && stock.link == 0;
+        let stocks = &self.stocks;
         let looks = |one: &Body, other: &Body| {
-            let kinds = [one.kind, other.kind];
-            let beside = if one.kind == BodyKind::Stock { other } else { one };
-            if lessens && kinds.contains(&BodyKind::Stock) && CutStock::holds_left(beside) {
-                return false;
+            let (stock, beside) = match one.kind {
+                BodyKind::Stock => (one, other),
+                _ => (other, one),
+            };
+            if stock.kind != BodyKind::Stock {
+                return true;
             }
-            let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
-            !(touches && cuts)
+            let lessens = || stocks.iter().any(|cut| cut.is(stock));
+            let spared = beside.kind == BodyKind::Cutter && cuts(stock);
+            !(spared || CutStock::holds_left(beside) && lessens())
         };
         let known = self.start.knows(&self.control.machine, motion);
         // Of what is not looked at it is not known what was there.
@@ -257,17 +261,17 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         }
         stands |= !rapid && !spins && self.cutter_faults() > hits;
         let against = Against { motion, ways, rapid, spins };
-        let chip = self.stock.as_mut().and_then(|stock| match stock.motion(&against) {
-            Taken::Cut(chip) => Some(chip),
-            Taken::Nothing => None,
-            Taken::Stands => {
-                stands = true;
-                None
+        let mut chip: Option<Chip> = None;
+        for stock in &mut self.stocks {
+            match stock.motion(&against) {
+                Taken::Cut(taken) => *chip.get_or_insert_default() += taken,
+                Taken::Nothing => {}
+                Taken::Stands => stands = true,
             }
-        });
+        }
         if let Some((hear, _)) = &mut self.told {
-            let left = self.stock.as_ref().and_then(CutStock::clear_by);
-            let clear_by = nearest.into_iter().chain(left).reduce(f64::min);
+            let left = self.stocks.iter().filter_map(CutStock::clear_by);
+            let clear_by = left.chain(nearest).reduce(f64::min);
             hear(&Heard { line, clear_by, chip });
         }
         if stands {
@@ -369,13 +373,14 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         if let Some((_, told)) = &mut self.told {
             *told = self.proof.clone();
         }
-        if let Some(stock) = &mut self.stock {
+        for stock in &mut self.stocks {
             stock.change_tool(machine, tool, &self.proof);
-            if let Some(tool) = tool.filter(|tool| !tool.is_drawn())
-                && !self.undrawn.iter().any(|(_, known)| *known == tool.number)
-            {
-                self.undrawn.push((line, tool.number));
-            }
+        }
+        if let Some(tool) = tool.filter(|tool| !tool.is_drawn())
+            && !self.stocks.is_empty()
+            && !self.undrawn.iter().any(|(_, known)| *known == tool.number)
+        {
+            self.undrawn.push((line, tool.number));
         }
     }
 
@@ -416,7 +421,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
     /// What came of the program `name`.
     pub fn finish(mut self, name: &str) -> ClearanceFound {
         self.put_down();
-        if let Some(stock) = self.stock.take() {
+        for stock in std::mem::take(&mut self.stocks) {
             let (rows, distances, left) = stock.finish();
             for row in rows {
                 self.rows.insert(row.names.clone(), row);
@@ -426,14 +431,18 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 && part.deepest.at_least > 0.0
             {
                 let [x, y, z] = part.deepest.point.into();
+                let which = match left.name.strip_prefix("stock ") {
+                    Some(name) => format!(" in stock {name}"),
+                    None => String::new(),
+                };
                 let message = format!(
-                    "the part is cut into, {} mm deep or more at [{x:.3}, {y:.3}, {z:.3}]",
+                    "the part{which} is cut into, {} mm deep or more at [{x:.3}, {y:.3}, {z:.3}]",
                     Short(part.deepest.at_least)
                 );
                 let help = "the path, the tool or [stock] part is another one";
                 self.found.findings.push(Diagnostic::error("clearance", message).help(help));
             }
-            self.found.left = Some(left);
+            self.found.left.push(left);
         }
         let at = |line| Some(SourcePlace::new(name, line, "", 0..0));
         let mut found = self.found;
@@ -453,10 +462,10 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         for row in self.rows.values() {
             if let Some(fault) = &row.fault {
                 let message = told(&self.control.machine, row, fault);
-                let by_cells = found.left.is_some() && row.names[0] == "stock";
+                let by_cells = found.left.iter().any(|left| left.name == row.names[0]);
                 let help = match by_cells && fault.verdict == Verdict::Unproven {
                     true => {
-                        "another path or tool; a finer [stock] resolution tells what is near to a wall from it"
+                        "another path or tool; a finer `resolution` of the stock tells what is near to a wall from it"
                     }
                     false => {
                         "another fixture, tool or path; what is only drawn too large is drawn again, a pair that may touch is left out by [clearance] ignore"

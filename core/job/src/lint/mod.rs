@@ -87,7 +87,9 @@ pub fn look_over<'m>(
     };
     // What no two bodies tell is not known, and no fault of the program.
     let clear = clear.filter(|clear| !clear.pairs.is_empty());
-    let stock = |row: &PairRow| row.names.iter().any(|name| name == "stock");
+    let stocks = &machine.stocks;
+    let stock =
+        |row: &PairRow| row.names.iter().any(|name| stocks.iter().any(|stock| stock.name == *name));
     let mut before: Vec<Diagnostic> = Vec::new();
     let depths = match clear.as_ref().is_some_and(|clear| clear.pairs.iter().any(stock)) {
         // Bodies tell it better.

@@ -90,7 +90,7 @@ impl<'a> Trials<'a> {
         dry_run.threads = request.threads;
         let machine = dry_run.machine(&[])?;
         // What stands about the part.
-        dry_run.keeps_clear = machine.stock.is_some() || !machine.fixtures.is_empty();
+        dry_run.keeps_clear = !machine.stocks.is_empty() || !machine.fixtures.is_empty();
         Ok(Self { dry_run, least: request.least, runs: 0, most: request.runs })
     }
 

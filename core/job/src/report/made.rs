@@ -32,8 +32,8 @@ pub struct PostPage<'a> {
     pub verification: Option<&'a Verification>,
     /// What was proven of it: nothing hits anything.
     pub clearance: Option<ClearanceSummary>,
-    /// What is left of a stock that it cuts.
-    pub left: Option<&'a StockLeft>,
+    /// What is left of the stocks that it cuts.
+    pub left: &'a [StockLeft],
     /// What is predicted of it.
     pub prediction: Option<&'a Prediction>,
     /// What the user should know.

@@ -78,10 +78,10 @@ impl Parts {
     /// # Errors
     /// They cannot be kept.
     pub fn of(session: &Session, machine: &Machine, meta: &mut Meta) -> Result<Self, Failure> {
-        Self::with_left(session, machine, meta, None)
+        Self::with_left(session, machine, meta, &[])
     }
 
-    /// The same with what is `left` of the stock.
+    /// The same with what is `left` of stocks.
     ///
     /// # Errors
     /// They cannot be kept.
@@ -89,7 +89,7 @@ impl Parts {
         session: &Session,
         machine: &Machine,
         meta: &mut Meta,
-        left: Option<&StockLeft>,
+        left: &[StockLeft],
     ) -> Result<Self, Failure> {
         let mut parts = Self::default();
         let faults = solids::add(machine, left, meta, &mut parts)?;

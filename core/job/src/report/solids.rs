@@ -28,7 +28,7 @@ struct DrawnBody<'m> {
     whole: bool,
     shape: Cow<'m, GivenShape>,
     place: &'m Option<SourcePlace>,
-    /// The stock: from its frame to the machine's. Its edges alone are drawn, the path goes through it.
+    /// A stock: from its frame to the machine's. Its edges alone are drawn, the path goes through it.
     stock: Option<Placement>,
 }
 
@@ -93,8 +93,8 @@ fn bodies(machine: &Machine) -> Vec<DrawnBody<'_>> {
         stock: None,
     });
     let fixtures = machine.fixtures.iter().map(|body| (body, None));
-    let stock = machine.stock.iter().map(|body| (body, Some(clearance::of_stock(machine))));
-    let given = fixtures.chain(stock).map(|(body, stock)| DrawnBody {
+    let stocks = machine.stocks.iter().map(|body| (body, Some(clearance::placed(machine, body))));
+    let given = fixtures.chain(stocks).map(|(body, stock)| DrawnBody {
         name: body.name.clone(),
         link: body.link,
         whole: false,
@@ -117,13 +117,14 @@ fn same(one: &[DrawnBody<'_>], other: &[DrawnBody<'_>]) -> bool {
 /// Adds the shapes of a machine and its heads to the parts of a report; what cannot be shown comes back.
 ///
 /// A row of the table is a corner: `corners` of them are a triangle (3) or an edge (2) of `body`, in the `set` of those that
-/// the machine or a head has; mm, machine frame, every axis at zero. What is `left` of the stock hangs on the part.
+/// the machine or a head has; mm, machine frame, every axis at zero. What is `left` of each stock hangs where it does; `over` of a
+/// table of its own is how far it is from the part that is to become of it, mm.
 ///
 /// # Errors
 /// They cannot be kept.
 pub(super) fn add(
     machine: &Machine,
-    left: Option<&StockLeft>,
+    left: &[StockLeft],
     meta: &mut Meta,
     parts: &mut Parts,
 ) -> Result<Vec<Diagnostic>, Failure> {
@@ -159,21 +160,34 @@ pub(super) fn add(
             }
         }
     }
-    let compared = left.and_then(|left| compared(machine, left));
-    let plain = left.filter(|_| compared.is_none()).and_then(|left| what_is_left(machine, left));
-    for [x, y, z] in plain.iter().flatten().flatten() {
-        table.row(&[0.0, 3.0, 0.0, *x, *y, *z]).map_err(fault)?;
+    let most = MOST_TRIANGLES / 2 / left.len().max(1);
+    let mut compared: Vec<(&StockLeft, Vec<ToldTriangle>)> = Vec::new();
+    for left in left {
+        let triangles = what_is_left(left, most).unwrap_or_default();
+        match left.over() {
+            Some(over) => compared.push((left, told(left, over, triangles))),
+            None => {
+                let corners = triangles.iter().flatten();
+                for [x, y, z] in corners {
+                    table.row(&[0.0, 3.0, left.link as f64, *x, *y, *z]).map_err(fault)?;
+                }
+            }
+        }
     }
     if table.rows() > 0 {
         parts.table(table)?;
     }
-    if let Some(compared) = compared {
+    if !compared.is_empty() {
+        let body = TableColumn::new("body", "", 0);
         let columns = [("over", 3), ("x", 2), ("y", 2), ("z", 2)];
         let columns = columns.map(|(name, decimals)| TableColumn::new(name, "mm", decimals));
-        let mut table = TableWriter::new("left", columns.to_vec(), Parts::scratch()?);
-        for (over, corners) in compared {
-            for [x, y, z] in corners {
-                table.row(&[over, x, y, z]).map_err(fault)?;
+        let columns = std::iter::once(body).chain(columns).collect();
+        let mut table = TableWriter::new("left", columns, Parts::scratch()?);
+        for (left, triangles) in compared {
+            for (over, corners) in triangles {
+                for [x, y, z] in corners {
+                    table.row(&[left.link as f64, over, x, y, z]).map_err(fault)?;
+                }
             }
         }
         parts.table(table)?;
@@ -181,25 +195,28 @@ pub(super) fn add(
     Ok(faults)
 }
 
-/// Triangles of what is left of a stock, few enough for a frame, mm, machine frame; none where nothing is.
-fn what_is_left(machine: &Machine, left: &StockLeft) -> Option<Vec<[Vertex; 3]>> {
-    let solid = DrawnSolid::read(&mut Cursor::new(left.stl()), MOST_TRIANGLES / 2).ok()?;
-    let stock = clearance::of_stock(machine);
-    let place = |corner: Vertex| stock.point(Vector3::from(corner)).into();
+/// A triangle, and how far it is from the part that is to become of its stock, mm: below zero in it, zero where it is as near
+/// as a cell tells.
+type ToldTriangle = (f64, [Vertex; 3]);
+
+/// Triangles of what is left of a stock, no more than `most`, mm, machine frame; none where nothing is.
+fn what_is_left(left: &StockLeft, most: usize) -> Option<Vec<[Vertex; 3]>> {
+    let solid = DrawnSolid::read(&mut Cursor::new(left.stl()), most).ok()?;
+    let place = |corner: Vertex| left.placed.point(Vector3::from(corner)).into();
     Some(solid.triangles.into_iter().map(|corners| corners.map(place)).collect())
 }
 
-/// The same with how far each is from the part that is to become of it, mm: below zero in it, zero where it is as near as a
-/// cell tells. None where no part is given.
-fn compared(machine: &Machine, left: &StockLeft) -> Option<Vec<(f64, [Vertex; 3])>> {
-    let mut over = left.over()?;
-    let stock = clearance::of_stock(machine);
-    let triangles = what_is_left(machine, left)?.into_iter();
-    let told = triangles.map(|corners| {
+/// The same with how far each is from the part.
+fn told(
+    left: &StockLeft,
+    mut over: impl FnMut(Vector3<f64>) -> f64,
+    triangles: Vec<[Vertex; 3]>,
+) -> Vec<ToldTriangle> {
+    let told = triangles.into_iter().map(|corners| {
         let middle = corners.map(Vector3::from).iter().sum::<Vector3<f64>>() / 3.0;
-        (over(stock.back(middle)), corners)
+        (over(left.placed.back(middle)), corners)
     });
-    Some(told.collect())
+    told.collect()
 }
 
 /// The shapes that can be read, few enough for a frame; and why others cannot.

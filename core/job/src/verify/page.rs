@@ -109,7 +109,7 @@ impl VerifyPage<'_> {
             meta.facts.extend(stock.into_iter().map(|[name, value]| fact(&name, value)));
         }
         meta.excludes = report::excludes(proven.as_ref());
-        let left = self.clearance.and_then(|proven| proven.left.as_ref());
+        let left = self.clearance.map_or(&[][..], |proven| &proven.left);
         let mut parts = Parts::with_left(self.session, self.machine, &mut meta, left)?;
         if let (Some(near), Some(proven)) = (near, &proven) {
             near.finish(proven, self.machine.clearance.keep, &mut parts, &mut meta)?;

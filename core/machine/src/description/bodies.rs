@@ -1,4 +1,4 @@
-//! What can hit something: fixtures, the stock, outlines of tools; and the distances to keep.
+//! What can hit something: fixtures, shapes of bodies, outlines of tools; and the distances to keep.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -12,6 +12,7 @@ use super::build::Builder;
 use super::keys::axes_are;
 use super::quantity::KeyedNumber;
 use super::solids::link_of;
+use super::stock::{StockCut, StockFile};
 use super::table::{keys, words};
 use crate::diagnostic::{Short, SourcePlace};
 
@@ -45,10 +46,10 @@ keys! {
     /// A body that can hit something. It has one of `block`, `cylinder` and `file`.
     BodyFile {
         /// What it hangs on: an axis letter is what that axis moves, `b` the bed, `t` the tool's side, `w` what carries the
-        /// part; w if not said. The stock hangs on the part.
+        /// part; w if not said. A stock for which nothing is said stands where the CL file has the part.
         on: Option<Spanned<String>>,
-        /// A box along X, Y and Z, from one corner to the opposite one, mm: a fixture in the machine frame with every axis at
-        /// zero, the stock in the part frame, as the CL file has it.
+        /// A box along X, Y and Z, from one corner to the opposite one, mm: a fixture, and a stock with `on`, in the machine
+        /// frame with every axis at zero; another stock in the part frame, as the CL file has it.
         block: Option<Spanned<[[KeyedNumber; 3]; 2]>>,
         /// A cylinder, the middles of its ends, mm, in the frame of `block`.
         cylinder: Option<Spanned<[[KeyedNumber; 3]; 2]>>,
@@ -126,25 +127,18 @@ keys! {
 /// A body that a machine file describes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenBody {
-    /// Its name: that of the fixture, or `stock`.
+    /// Its name: that of the fixture, `stock`, or `stock NAME` of one of several.
     pub name: String,
     /// The body of the machine that it hangs on: 0 carries the part, n is what follows the nth axis of the chain.
     pub link: usize,
-    /// Its shape, mm: of a fixture in the machine frame, every axis at zero; of the stock in the frame of the CL file.
+    /// Its shape, mm: in the frame of the CL file, if it is in that of the part; else in the machine frame, every axis at zero.
     pub shape: GivenShape,
+    /// A stock that stands where the CL file has the part.
+    pub in_part: bool,
     /// Where the machine file has it.
     pub place: Option<SourcePlace>,
     /// It gets less by what is cut of it.
     pub cut: Option<StockCut>,
-}
-
-/// How it is known what is left of a stock.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StockCut {
-    /// Edge of a cell, mm; that which follows from its size where none is said.
-    pub resolution: Option<f64>,
-    /// The part that is to become of it, an STL file.
-    pub part: Option<PathBuf>,
 }
 
 impl GivenBody {
@@ -284,26 +278,13 @@ impl Builder<'_> {
         bodies.collect()
     }
 
-    /// The stock.
-    pub(super) fn stock(&mut self, file: Option<&Spanned<BodyFile>>) -> Option<GivenBody> {
-        let file = file?;
-        if let Some(on) = &file.get_ref().on {
-            let message = "the stock hangs on the part and on nothing else".to_owned();
-            self.fault("machine-body", on.span(), message, "leave `on` out");
-        }
-        let BodyFile { cut, resolution, part, .. } = file.get_ref();
-        let resolution = self.checked(resolution);
-        let is_cut = cut.as_ref().is_some_and(|cut| *cut.get_ref());
-        if let (Some(part), false) = (part, is_cut) {
-            let message = "[stock] has a part, and is not cut".to_owned();
-            self.fault("machine-body", part.span(), message, "cut = true");
-        }
-        let part = part.as_ref().and_then(|part| self.stl_path("machine-body", part));
-        let cut = is_cut.then_some(StockCut { resolution, part });
-        self.body("stock", 0, file).map(|body| GivenBody { cut, ..body })
-    }
-
-    fn body(&mut self, name: &str, link: usize, file: &Spanned<BodyFile>) -> Option<GivenBody> {
+    /// A body of this name on a link, as its table has it; none where that takes it away.
+    pub(super) fn body(
+        &mut self,
+        name: &str,
+        link: usize,
+        file: &Spanned<BodyFile>,
+    ) -> Option<GivenBody> {
         let BodyFile { block, cylinder, radius, file: stl, .. } = file.get_ref();
         let radius = self.checked(radius);
         let shape = match (block, cylinder, radius, stl) {
@@ -331,7 +312,7 @@ impl Builder<'_> {
             }
         };
         let place = self.sources.place(file.span());
-        Some(GivenBody { name: name.to_owned(), link, shape, place, cut: None })
+        Some(GivenBody { name: name.to_owned(), link, shape, place, in_part: false, cut: None })
     }
 
     /// What is to be kept; pairs may name fixtures that are taken away.
@@ -339,11 +320,15 @@ impl Builder<'_> {
         &mut self,
         file: &ClearanceFile,
         fixtures: &BTreeMap<Spanned<String>, Spanned<BodyFile>>,
+        stock: Option<&Spanned<StockFile>>,
     ) -> ClearanceRules {
-        let gone = fixtures.iter().filter(|(_, body)| {
-            body.get_ref().file.as_ref().is_some_and(|file| file.get_ref().is_empty())
-        });
-        let gone: Vec<&str> = gone.map(|(name, _)| name.get_ref().as_str()).collect();
+        let gone =
+            |body: &BodyFile| body.file.as_ref().is_some_and(|file| file.get_ref().is_empty());
+        let fixtures = fixtures.iter().map(|(name, body)| (name.get_ref().clone(), body));
+        let stocks = stock.into_iter().flat_map(|stock| &stock.get_ref().named);
+        let stocks = stocks.map(|(name, body)| (format!("stock {}", name.get_ref()), body));
+        let gone = fixtures.chain(stocks).filter(|(_, body)| gone(body.get_ref()));
+        let gone: Vec<String> = gone.map(|(name, _)| name).collect();
         let keep = self.checked(&file.keep).unwrap_or(0.0);
         let mut pairs = Vec::with_capacity(file.pairs.len());
         for pair in &file.pairs {
@@ -374,7 +359,7 @@ impl Builder<'_> {
         let cutter = names.clone().any(|name| name == "cutter" || name.starts_with("cutter T"));
         if let Some(given) = pair.keep.as_ref().filter(|_| keep.is_some_and(|keep| keep > 0.0))
             && cutter
-            && names.any(|name| name == "stock")
+            && names.any(|name| name == "stock" || name.starts_with("stock "))
         {
             let message = "[clearance] pairs: cutter and stock keep no distance at feed".to_owned();
             let help = "rapid = in the place of keep =: what they keep at rapid";
@@ -382,9 +367,9 @@ impl Builder<'_> {
         }
     }
 
-    fn body_pair(&self, [one, other]: &[Spanned<String>; 2], gone: &[&str]) -> BodyPair {
+    fn body_pair(&self, [one, other]: &[Spanned<String>; 2], gone: &[String]) -> BodyPair {
         let names = [one, other].map(|name| name.get_ref().clone());
-        let taken_away = names.iter().find(|name| gone.contains(&name.as_str())).cloned();
+        let taken_away = names.iter().find(|name| gone.contains(name)).cloned();
         let place = self.sources.place(one.span().start..other.span().end);
         BodyPair { names, place, taken_away }
     }

@@ -350,9 +350,9 @@ impl Builder<'_> {
         let own = self.axis_free_rules(file, &mut model_options);
         let solids = self.solids(&file.solids, &axes);
         let fixtures = self.fixtures(&file.fixture, &axes);
-        let stock = self.stock(file.stock.as_ref());
+        let stocks = self.stocks(file.stock.as_ref(), &axes);
         let outlines = self.tool_outlines(&file.tools);
-        let clearance = self.clearance(&file.clearance, &file.fixture);
+        let clearance = self.clearance(&file.clearance, &file.fixture, file.stock.as_ref());
         let motion = self.motion(&file.motion);
         let plan = self.plan(&file.plan, &motion, own.accuracy.tolerance);
         let unused = |section: &'static str, tables: BTreeMap<String, Vec<GivenOption>>| {
@@ -401,7 +401,7 @@ impl Builder<'_> {
             unused_options,
             solids,
             fixtures,
-            stock,
+            stocks,
             outlines,
             clearance,
             lint_ignored: file.lint.ignore.iter().map(|code| code.get_ref().clone()).collect(),

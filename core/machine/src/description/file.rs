@@ -19,6 +19,7 @@ use super::profile::ProfileFile;
 use super::program_file::ProgramFile;
 use super::quantity::KeyedNumber;
 use super::servo_file::ServoFile;
+use super::stock::StockFile;
 use super::table::{
     Count, DeValue, EntryError, Key, KeyType, Schemas, Slip, Spanned, Value, defined, keys, words,
 };
@@ -115,8 +116,8 @@ keys! {
         /// What holds the part, or is in the way besides, by names of your own: for `post clearance`.
         fixture: BTreeMap<Spanned<String>, Spanned<BodyFile>>,
         /// What is cut, as it is before it is cut: for `post clearance`, for texts of the program, and for dialects that tell the
-        /// control of it, which otherwise take where the tool goes.
-        stock: Option<Spanned<BodyFile>>,
+        /// control of it, which otherwise take where the tool goes. Of several each has a name of your own, `[stock.NAME]`.
+        stock: Option<Spanned<StockFile>>,
         /// Distances that bodies keep from one another: for `post clearance`.
         clearance: ClearanceFile,
         /// What `post lint` looks for in NC programs.

@@ -38,6 +38,7 @@ mod setting;
 pub(crate) mod smoothing;
 mod solids;
 mod spindle;
+mod stock;
 pub(crate) mod table;
 mod tools;
 mod wait;
@@ -52,7 +53,7 @@ use nalgebra::Vector3;
 pub use accuracy::{AccuracyRules, ControlPoint, SHARE_AT_POLES};
 pub use arcs::Arcs;
 pub use bodies::{
-    BodyPair, ClearanceRules, GivenBody, GivenShape, KeptPair, RapidAxes, StockCut, ToolOutline,
+    BodyPair, ClearanceRules, GivenBody, GivenShape, KeptPair, RapidAxes, ToolOutline,
 };
 pub use build::{Evaluated, MachineReading, examine, load};
 pub use choice::{Retract, Rewind, SolutionCriterion, SolutionRules};
@@ -76,6 +77,7 @@ pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
 pub use solids::Solid;
 pub use spindle::{SpindleSpeeds, surface_rpm};
+pub use stock::StockCut;
 pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 
 use crate::along_word::AlongWord;
@@ -189,8 +191,8 @@ pub struct Machine {
     pub solids: Vec<Solid>,
     /// What holds the part, and what is in the way besides.
     pub fixtures: Vec<GivenBody>,
-    /// The raw part; none if the file does not say.
-    pub stock: Option<GivenBody>,
+    /// The raw parts; none if the file does not say.
+    pub stocks: Vec<GivenBody>,
     /// How far tools reach from their axes.
     pub outlines: Vec<ToolOutline>,
     /// Distances that bodies keep.

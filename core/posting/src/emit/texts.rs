@@ -1,9 +1,7 @@
 //! Text of the machine file's own: what its templates are filled with, and where their lines come.
 
 use post_machine::axis_words;
-use post_machine::description::{
-    GivenBody, Machine, OutputUnits, ProgramRules, Smoothing, TextPlace,
-};
+use post_machine::description::{Machine, OutputUnits, ProgramRules, Smoothing, TextPlace};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::program_text::{
     CompensationFacts, Extents, Facts, OperationFacts, PlaneFacts, ProgramFacts, SpindleFacts,
@@ -52,11 +50,7 @@ impl<'a> ProgramTexts<'a> {
             tools: ahead.map(|ahead| ahead.tools().into_iter().map(tool_facts).collect()),
             extents: ahead.and_then(|ahead| ahead.extents).map(|[min, max]| Extents { min, max }),
             time: ahead.and_then(|ahead| ahead.time_s),
-            stock: machine
-                .stock
-                .as_ref()
-                .and_then(GivenBody::extents)
-                .map(|[min, max]| Extents { min, max }),
+            stock: machine.stock_extents().map(|[min, max]| Extents { min, max }),
         };
         Self {
             rules: &machine.program,

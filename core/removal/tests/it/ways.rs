@@ -5,7 +5,7 @@ use post_clearance::piece::Way;
 use post_clearance::placement::Placement;
 use post_machine::kinematics::{Joints, Solver};
 use post_motion::path::{Curve, Interpolation, Stance};
-use post_removal::along::{Found, Mounted, Watched, cut};
+use post_removal::along::{Found, Mounted, Seat, Watched, cut};
 use post_removal::field::{Cutter, Field};
 use post_removal::profile::ToolPose;
 use post_testkit::{Rng, at_least, randomised};
@@ -53,7 +53,7 @@ impl Case {
         let top = profile.iter().map(|[z, _]| *z).fold(0.0, f64::max);
         let widest = profile.iter().map(|[_, r]| *r).fold(0.0, f64::max);
         let sphere = (pose.tip + pose.axis * 0.5 * top, libm::hypot(0.5 * top, widest));
-        Mounted::new(&reference.joints, self.frame, pose, sphere)
+        Mounted::new(&reference.joints, &Seat { link: 0, frame: self.frame }, pose, sphere)
     }
 
     fn stance(&self, joints: Joints) -> Stance {

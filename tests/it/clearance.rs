@@ -518,6 +518,24 @@ fn bodies_that_cannot_be_are_refused_by_their_line() {
             "the cutter of tool 4 goes back, from z = 50 to 20 mm",
         ),
         (
+            "[tools.4]\ncutter = [[0, 0], [5, 9, { arc = 5 }]]\n",
+            "an arc of 5 mm of the cutter of tool 4 does not reach from one point to the next, 10.29",
+        ),
+        (
+            "[tools.4]\ncutter = [[0, 0], [0, 5, { arc = 5 }]]\n",
+            "an arc of 5 mm of the cutter of tool 4 goes back in z on its way",
+        ),
+        (
+            "[tools.4]\nholder = [[0, 1], [8, 1, { arc = -5 }]]\n",
+            "an arc of -5 mm of the holder of tool 4 comes to r = -1 mm, beyond the axis",
+        ),
+        (
+            "[tools.4]\ncutter = [[0, 0, { arc = 5 }], [5, 5]]\n",
+            "the cutter of tool 4 begins with an arc, and no point is before it",
+        ),
+        ("[tools.4]\ncutter = [[0, 0], [5, 5, { radius = 5 }]]\n", "there is no key `radius` here"),
+        ("[tools.4]\ncutter = [[0, 0], [5]]\n", "a point of 1 things, expected [z, r]"),
+        (
             "[tools.4]\nholder = [[-30, 20], [0, 20]]\n",
             "the holder of tool 4 ends at z = 0 mm: no part of it is below the gauge point",
         ),

@@ -249,6 +249,66 @@ fn each_line_is_told_by_what_it_cuts() {
     assert!(deepest[0] > 5.5 && deepest[0] < 6.001 && deepest[1] > 5.999, "{deepest:?}");
 }
 
+/// A slot by a ball: half a circle, however its arc is held by lines; and a holder whose rounding clears what its corner would
+/// not.
+#[test]
+fn arcs_of_cutters_and_holders_are_true_to_size() {
+    let slot = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT1 M6\nS3000 M3\nG54\nG0 X-50. Y0.\nG43 H1 Z5.\n\
+                G0 Z-5.\nG1 X50. F800.\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n";
+    let ball = "cutter = [[0, 0], [5, 5, { arc = 5 }], [60, 5]]";
+    let (_, said, clear) = proven(&machine("cut = true\nresolution = 0.1", ball), slot, &[]);
+    assert!(clear, "{said}");
+    let cut = said.lines().find_map(|line| line.strip_prefix("cut of it, mm³")).unwrap();
+    let bounds: Vec<f64> = cut.split(" to ").map(|end| end.trim().parse().unwrap()).collect();
+    let truth = 80.0 * std::f64::consts::PI * 25.0 / 2.0;
+    assert!(bounds[0] <= truth && truth <= bounds[1], "{cut} {truth}");
+    assert!(bounds[1] - bounds[0] < 0.06 * truth, "{cut}");
+    // The nose of the holder is 12 mm above the tip and goes by the edge of the block, 11 mm from the middle, 1 mm above it: the
+    // corner at r = 14 hits what the rounding by 8 does not.
+    let wall = |holder: &str| {
+        let first = format!("holder = {holder}\ncutter = [[0, 5], [12, 5]]");
+        let mine = machine("", &first).replace("-30], [40, 30, 0]]", "-30], [40, -11, 13]]");
+        let along = slot.replace("G0 Z-5.\nG1", "G0 Z0.\nG1");
+        proven(&mine, &along, &[])
+    };
+    let (_, said, clear) = wall("[[0, 14], [88, 14]]");
+    assert!(!clear && said.contains("stock hits holder T1"), "{said}");
+    let (_, said, clear) = wall("[[0, 14], [80, 14], [88, 6, { arc = 8 }]]");
+    assert!(clear, "{said}");
+    // The same rounding hollow leaves still less.
+    assert!(wall("[[0, 14], [80, 14], [88, 6, { arc = -8 }]]").2);
+}
+
+/// The corner of an end mill that the CL file describes: what goes by below it is not hit.
+#[test]
+fn a_corner_radius_of_the_cl_file_counts() {
+    let mine = machine("", "").replace("[tools.1]\nlength = 100\n", "[tools]\n1 = 100\n");
+    let mine = mine.replace("[40, 30, 0]]", "[40, 30, -20]]\n[fixture.rail]\nblock = [[-40, 9.5, -330], [40, 30, -299]]");
+    let program = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT1 M6\nS3000 M3\nG54\nG0 X-60. Y0.\nG43 H1 Z5.\n\
+                   G0 Z0.\nG1 X60. F800.\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n";
+    for (cutter, clear) in [
+        ("CUTTER/20", false),
+        ("CUTTER/20,0", false),
+        ("CUTTER/20,4", true),
+        ("CUTTER/20,4,6,4,0,0,60", true),
+        // Its corner lies elsewhere, or its side leans.
+        ("CUTTER/20,4,5,4,0,0,60", false),
+        ("CUTTER/20,4,6,4,0,5,60", false),
+        ("TLDATA/MILL,20,4,60,0,0", true),
+        ("TLDATA/MILL,20,4,60,3,0", false),
+        ("TLDATA/DRILL,20,4,60,0,0", false),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("mine.toml"), &mine).unwrap();
+        fs::write(folder.path().join("part.nc"), program).unwrap();
+        fs::write(folder.path().join("part.cls"), format!("{cutter}\nLOADTL/1\nGOTO/0,0,0\n")).unwrap();
+        let words =
+            ["clearance", "part.nc", "-m", "mine.toml", "--mount", "0,0,-300", "--cl", "part.cls"];
+        let run = post_in(folder.path(), &words);
+        assert_eq!(run.code == 0, clear, "{cutter}: {}{}", run.out, run.err);
+    }
+}
+
 /// A line that hits what is left is told as no clear one, and one that goes above it by how far.
 #[test]
 fn each_line_is_told_by_how_near_it_comes_to_what_is_left() {

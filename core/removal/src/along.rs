@@ -179,7 +179,7 @@ pub struct Place {
 #[derive(Clone, Debug)]
 pub struct Watched {
     mounted: Mounted,
-    /// Of a body of revolution.
+    /// Of a body of revolution: what certainly belongs to it.
     profile: Option<Vec<[f64; 2]>>,
     /// Its pieces, machine frame, all axes at zero.
     pieces: Vec<Convex>,
@@ -198,11 +198,11 @@ struct Known {
 }
 
 impl Watched {
-    /// A body of revolution, points [z, r] in mm, z from where it begins.
-    pub fn new(mounted: Mounted, profile: Vec<[f64; 2]>) -> Self {
+    /// A body of revolution between an inner and an outer outline, points [z, r] in mm, z from where it begins.
+    pub fn new(mounted: Mounted, inner: Vec<[f64; 2]>, outer: &[[f64; 2]]) -> Self {
         let ToolPose { tip, axis } = mounted.at_zero;
-        let pieces = post_clearance::shape::turned_pieces(&profile, tip, axis);
-        Self { profile: Some(profile), ..Self::of_pieces(mounted, pieces) }
+        let pieces = post_clearance::shape::turned_pieces(outer, tip, axis);
+        Self { profile: Some(inner), ..Self::of_pieces(mounted, pieces) }
     }
 
     /// A body of convex pieces, machine frame, all axes at zero.

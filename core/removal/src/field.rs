@@ -57,7 +57,12 @@ pub struct Cutter {
 impl Cutter {
     /// The cutter of a profile, points [z, r] in mm, z from the tip.
     pub fn new(profile: &[[f64; 2]]) -> Self {
-        Self { inner: runs(profile), outer: frusta(profile) }
+        Self::between(profile, profile)
+    }
+
+    /// The cutter between an inner and an outer outline.
+    pub fn between(inner: &[[f64; 2]], outer: &[[f64; 2]]) -> Self {
+        Self { inner: runs(inner), outer: frusta(outer) }
     }
 
     /// A body that removes nothing for certain, and may remove what it touches.

@@ -9,7 +9,7 @@ use post_clearance::convex::Convex;
 use post_clearance::placement::Placement;
 use post_clearance::proof::{Body, BodyKind};
 use post_clearance::shape::{MeshFaults, Shape};
-use post_machine::description::{GivenBody, GivenShape, Machine, Solid, ToolOutline};
+use post_machine::description::{GivenBody, GivenShape, Machine, Solid, ToolOutline, TurnedProfile};
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_report::solid;
 
@@ -31,17 +31,27 @@ pub(super) struct ToolShape<'a> {
     pub length: f64,
     /// What the machine file has of it.
     pub outline: Option<&'a ToolOutline>,
-    /// Its radius as a file of tools or the CL file has it, mm.
-    pub radius: Option<f64>,
+    /// Radius and corner radius as a file of tools or the CL file has them, mm.
+    pub size: Option<[f64; 2]>,
 }
 
 impl ToolShape<'_> {
-    /// What cuts: points [z, r], z in mm from the tip.
-    pub fn cutter(&self) -> Option<Vec<[f64; 2]>> {
+    /// What cuts, z in mm from the tip.
+    pub fn cutter(&self) -> Option<TurnedProfile> {
         let drawn = self.outline.map(|outline| outline.cutter.clone());
-        let drawn = drawn.filter(|points| !points.is_empty());
-        // Nothing says where it ends: up to the gauge point it is as thick as where it cuts.
-        drawn.or_else(|| self.radius.map(|radius| vec![[0.0, radius], [self.length, radius]]))
+        let drawn = drawn.filter(|profile| !profile.is_empty());
+        drawn.or_else(|| {
+            let [radius, corner] = self.size?;
+            let corner = corner.clamp(0.0, radius.min(self.length));
+            let mut profile = TurnedProfile::from(vec![[0.0, radius - corner]]);
+            // One that is no arc is the cylinder around it.
+            if corner <= 0.0 || profile.arc_to([corner, radius], corner).is_err() {
+                profile = TurnedProfile::from(vec![[0.0, radius]]);
+            }
+            // Nothing says where it ends: up to the gauge point it is as thick as where it cuts.
+            profile.line_to([self.length, radius]);
+            Some(profile)
+        })
     }
 
     /// The shape of its cutter is known, and not its radius alone.
@@ -101,10 +111,11 @@ pub(super) fn of_tool(
     let ToolShape { number, length, outline, .. } = *tool;
     let link = machine.axes.len();
     let tip = machine.gauge - machine.tool_axis * length;
-    let empty = Vec::new();
-    let holder = outline.map_or(&empty, |outline| &outline.holder);
+    let holder = outline.map_or(&[][..], |outline| &outline.holder.outer);
     let holder = Shape::turned(holder, machine.gauge, -machine.tool_axis);
-    let cutter = tool.cutter().and_then(|points| Shape::turned(&points, tip, machine.tool_axis));
+    let cutter = tool.cutter();
+    let cutter =
+        cutter.and_then(|profile| Shape::turned(&profile.outer, tip, machine.tool_axis));
     let mut bodies = Vec::new();
     for (kind, what, shape) in
         [(BodyKind::Holder, "holder", holder), (BodyKind::Cutter, "cutter", cutter)]

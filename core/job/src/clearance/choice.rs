@@ -153,12 +153,18 @@ impl BodyClearance for ChoiceBodies<'_> {
         let machine = self.machine;
         let number = tool.number;
         let listed = machine.tool_table.as_ref();
-        let listed = listed.and_then(|table| table.entry(number, number)?.diameter());
+        let listed = listed.and_then(|table| {
+            let tool = table.entry(number, number)?;
+            Some([tool.diameter()?, tool.corner_radius.unwrap_or(0.0)])
+        });
+        // The corner of one that the CL file describes is what the proof of the program knows.
+        let size = listed.or(tool.diameter.map(|diameter| [diameter, 0.0]));
+        let size = size.filter(|[size, _]| *size > 0.0);
         let shape = ToolShape {
             number,
             length,
             outline: machine.outlines.iter().find(|outline| outline.number == number),
-            radius: listed.or(tool.diameter).filter(|size| *size > 0.0).map(|size| 0.5 * size),
+            size: size.map(|[diameter, corner]| [0.5 * diameter, corner]),
         };
         self.tool = of_tool(machine, &shape, &mut Vec::new());
     }

@@ -9,7 +9,7 @@ use post_clearance::placement::Placement;
 use post_clearance::proof::{Body, BodyKind, Fault, Proof, Verdict};
 use post_clearance::shape::Shape;
 use post_machine::check::number as decimals;
-use post_machine::description::{GivenBody, GivenShape, Machine};
+use post_machine::description::{GivenBody, GivenShape, Machine, TurnedProfile};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joint;
 use post_readback::{Motion, SpindleState};
@@ -249,6 +249,13 @@ pub(super) enum Taken {
     Stands,
 }
 
+/// What of a profile lies between two heights, mm.
+fn cut_off(profile: &TurnedProfile, heights: [f64; 2]) -> TurnedProfile {
+    let TurnedProfile { points, outer, inner } = profile;
+    let [points, outer, inner] = [points, outer, inner].map(|points| between(points, heights));
+    TurnedProfile { points, outer, inner }
+}
+
 impl CutStock {
     /// The stocks of a machine whose file says that they are cut.
     pub fn all(machine: &Machine, findings: &mut Vec<Diagnostic>) -> Vec<Self> {
@@ -370,9 +377,9 @@ impl CutStock {
         let at_gauge = ToolPose { tip: machine.gauge, axis: -up };
         let profile = tool.cutter().unwrap_or_default();
         let edge = outline.and_then(|outline| outline.edge).unwrap_or(f64::INFINITY);
-        let edges = between(&profile, [f64::NEG_INFINITY, edge]);
-        let holder = outline.map_or_else(Vec::new, |outline| outline.holder.clone());
-        let shank = between(&profile, [edge, f64::INFINITY]);
+        let edges = cut_off(&profile, [f64::NEG_INFINITY, edge]);
+        let holder = outline.map_or_else(TurnedProfile::default, |outline| outline.holder.clone());
+        let shank = cut_off(&profile, [edge, f64::INFINITY]);
         let bodies = [
             (PartKind::Holder, "holder", BodyKind::Holder, at_gauge, holder),
             (PartKind::Cutter, "cutter", BodyKind::Cutter, at_tip, edges.clone()),
@@ -380,24 +387,29 @@ impl CutStock {
         ];
         let mut parts = Vec::new();
         for (kind, what, counted, at_zero, profile) in bodies {
-            let shape = Shape::turned(&profile, at_zero.tip, at_zero.axis);
+            let TurnedProfile { inner, outer, .. } = profile;
+            let shape = Shape::turned(&outer, at_zero.tip, at_zero.axis);
             let rules = proof.rules_of(|one, other| self.is(one) && other.kind == counted);
             let (Some(rules), Some(shape)) = (rules, shape) else { continue };
             let yields = kind != PartKind::Holder;
             let keep = [if yields { 0.0 } else { rules.keep }, rules.rapid];
             let mounted = Mounted::new(&self.axes, &self.seat, at_zero, shape.sphere());
             let row = self.row(format!("{what} T{number}"));
-            let body = Cutter::vague(&profile);
-            let watched = Watched::new(mounted.clone(), profile);
+            let body = Cutter::vague(&outer);
+            let watched = Watched::new(mounted.clone(), inner, &outer);
             let held = Held { row, watched, keep, yields };
             parts.push(Part { kind, held, body, mounted });
         }
-        let cutter = Shape::turned(&edges, at_tip.tip, up).map(|shape| {
+        let TurnedProfile { inner, outer, .. } = &edges;
+        let cutter = Shape::turned(outer, at_tip.tip, up).map(|shape| {
             let mounted = Mounted::new(&self.axes, &self.seat, at_tip, shape.sphere());
-            let cutter = if tool.is_drawn() { Cutter::new(&edges) } else { Cutter::vague(&edges) };
+            let cutter = match tool.is_drawn() {
+                true => Cutter::between(inner, outer),
+                false => Cutter::vague(outer),
+            };
             (cutter, mounted)
         });
-        self.been = Been::new(&profile);
+        self.been = Been::new(&profile.points);
         CuttingTool { number, cutter, edge, parts }
     }
 

@@ -137,8 +137,8 @@ pub fn prove(
     let mut findings = Vec::new();
     let (bodies, stocks) = described(machine, &mut findings);
     let tools = facts.tools.iter();
-    let diameters = tools.filter_map(|tool| Some((tool.number, tool.diameter?))).collect();
-    let cuts = Cuts { diameters, fastest: facts.fastest };
+    let sizes = tools.filter_map(|tool| Some((tool.number, [tool.diameter?, tool.corner_radius])));
+    let cuts = Cuts { sizes: sizes.collect(), fastest: facts.fastest };
     let mut run = ProgramRun::new(control.program_with_rapids(name, text)?);
     let mut watch = ClearanceWatch::new(control, bodies, cuts, hear, stocks);
     while let Some(done) = run.block() {
@@ -209,8 +209,8 @@ pub fn files(machine: &Machine) -> impl Iterator<Item = &Path> {
 /// What a CL file tells of its cuts.
 #[derive(Clone, Debug, Default)]
 struct Cuts {
-    /// Diameters of the cutters by tool, mm.
-    diameters: Vec<(u32, f64)>,
+    /// Diameters and corner radii of the cutters by tool, mm.
+    sizes: Vec<(u32, [f64; 2])>,
     /// The largest feed of a cut, mm/min; zero where none is known.
     fastest: f64,
 }

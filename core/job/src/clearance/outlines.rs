@@ -1,7 +1,7 @@
 //! Whether holder, cutter, edge and length of a tool fit together, and whether they are there.
 
 use post_machine::check::number as decimals;
-use post_machine::description::{Machine, ToolOutline};
+use post_machine::description::{Machine, ToolOutline, TurnedProfile};
 use post_machine::diagnostic::Diagnostic;
 
 /// Ends that are no farther apart than this meet, mm.
@@ -54,7 +54,7 @@ fn lacking(machine: &Machine, outline: &ToolOutline) -> Vec<Diagnostic> {
 /// What of a tool does not fit together.
 fn unfit(machine: &Machine, outline: &ToolOutline) -> Vec<Diagnostic> {
     let ToolOutline { number, holder, cutter, edge } = outline;
-    let top = |points: &[[f64; 2]]| points.iter().map(|[z, _]| *z).reduce(f64::max);
+    let top = |profile: &TurnedProfile| profile.points.iter().map(|[z, _]| *z).reduce(f64::max);
     let length = machine.tools.iter().find(|(known, _)| known == number).map(|(_, length)| *length);
     let (holder, cutter) = (top(holder), top(cutter));
     let mm = |value: f64| format!("{} mm", decimals(value, 3));

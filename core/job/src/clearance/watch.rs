@@ -353,7 +353,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             return;
         };
         let outline = machine.outline(number);
-        let tool = ToolShape { number, length, outline, radius: self.radius_of(number) };
+        let tool = ToolShape { number, length, outline, size: self.size_of(number) };
         let mut lacks = Vec::new();
         bodies.extend(of_tool(machine, &tool, &mut lacks));
         for name in lacks {
@@ -361,7 +361,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 self.found.lacks.push(name);
             }
         }
-        let profile = outline.map_or(&[][..], |outline| &outline.cutter);
+        let profile = outline.map_or(&[][..], |outline| &outline.cutter.points);
         self.been = Been::new(profile);
         self.begin(bodies, Some(&tool), motion.line);
     }
@@ -393,12 +393,16 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         of(&offsets.tools).or_else(|| of(&machine.tools)).or_else(table).or(offsets.length)
     }
 
-    fn radius_of(&self, number: u32) -> Option<f64> {
+    /// Radius and corner radius of a tool, mm.
+    fn size_of(&self, number: u32) -> Option<[f64; 2]> {
         let table = self.control.machine.tool_table.as_ref();
-        let tool = table.and_then(|table| table.entry(number, number)?.diameter());
-        let cl =
-            || self.cuts.diameters.iter().find(|(tool, _)| *tool == number).map(|(_, size)| *size);
-        tool.or_else(cl).filter(|size| *size > 0.0).map(|size| 0.5 * size)
+        let listed = table.and_then(|table| {
+            let tool = table.entry(number, number)?;
+            Some([tool.diameter()?, tool.corner_radius.unwrap_or(0.0)])
+        });
+        let cl = || self.cuts.sizes.iter().find(|(tool, _)| *tool == number).map(|(_, size)| *size);
+        let size = listed.or_else(cl).filter(|[size, _]| *size > 0.0);
+        size.map(|[diameter, corner]| [0.5 * diameter, corner])
     }
 
     /// Puts down what is known of the pairs.

@@ -29,8 +29,8 @@ impl Marks {
         outline: Option<&ToolOutline>,
     ) {
         let outline = outline.map(|outline| OutlineMeta {
-            cutter: outline.cutter.clone(),
-            holder: outline.holder.clone(),
+            cutter: outline.cutter.points.clone(),
+            holder: outline.holder.points.clone(),
         });
         self.push(EventMeta { row, kind: "tool", text, cutter, outline });
     }

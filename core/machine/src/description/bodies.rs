@@ -1,4 +1,4 @@
-//! What can hit something: fixtures, shapes of bodies, outlines of tools; and the distances to keep.
+//! What can hit something: shapes of bodies, fixtures; and the distances to keep.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ use super::quantity::KeyedNumber;
 use super::solids::link_of;
 use super::stock::{StockCut, StockFile};
 use super::table::{keys, words};
-use crate::diagnostic::{Short, SourcePlace};
+use crate::diagnostic::SourcePlace;
 
 const KEPT: Bounds = Bounds {
     table: "[clearance] ",
@@ -27,8 +27,6 @@ const KEPT: Bounds = Bounds {
 const KINDS: [&str; 3] = ["stock", "holder", "cutter"];
 const RESOLUTION: Bounds =
     Bounds { table: "[stock] ", says: " mm", ..Bounds::above_zero("machine-body") };
-
-const EDGE: Bounds = Bounds { says: " mm", ..Bounds::above_zero("machine-body") };
 
 const RADIUS: Bounds = Bounds { says: " mm", ..Bounds::above_zero("machine-body") };
 
@@ -108,22 +106,6 @@ keys! {
     }
 }
 
-keys! {
-    /// A tool: its length, and how far it reaches from its axis.
-    ToolOutlineFile {
-        /// From the gauge point to the tip, mm.
-        length: Option<KeyedNumber>,
-        /// What does not cut, as a profile of revolution: points [z, r], z in mm from the gauge point towards the tip, r in
-        /// mm from the axis. What is between two points is a cone.
-        holder: Vec<[KeyedNumber; 2]>,
-        /// What cuts, likewise, z in mm from the tip towards the gauge point.
-        cutter: Vec<[KeyedNumber; 2]>,
-        /// How far its edges go up from the tip, mm; what of the cutter is above them is a shank, and may touch no stock. All
-        /// of the cutter cuts if not said.
-        edge: Option<KeyedNumber> = EDGE,
-    }
-}
-
 /// A body that a machine file describes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GivenBody {
@@ -171,19 +153,6 @@ pub enum GivenShape {
     },
     /// An STL file.
     File(PathBuf),
-}
-
-/// How far a tool reaches from its axis.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ToolOutline {
-    /// Its number.
-    pub number: u32,
-    /// Points [z, r] of what does not cut, mm, z from the gauge point towards the tip.
-    pub holder: Vec<[f64; 2]>,
-    /// Points [z, r] of what cuts, mm, z from the tip towards the gauge point.
-    pub cutter: Vec<[f64; 2]>,
-    /// How far its edges go up from the tip, mm; all of the cutter if not said.
-    pub edge: Option<f64>,
 }
 
 /// Two bodies, or all bodies of two kinds, by the names that a machine file calls them.
@@ -372,72 +341,5 @@ impl Builder<'_> {
         let taken_away = names.iter().find(|name| gone.contains(name)).cloned();
         let place = self.sources.place(one.span().start..other.span().end);
         BodyPair { names, place, taken_away }
-    }
-
-    /// The points of a cutter: they begin at the tip.
-    pub(super) fn cutter(&mut self, what: &str, points: &[[KeyedNumber; 2]]) -> Vec<[f64; 2]> {
-        let profile = self.profile(what, points);
-        if let ([[z, _], ..], Some([begins, _])) = (points, profile.first())
-            && *begins != 0.0
-        {
-            let (way, side) =
-                (Short(libm::fabs(*begins)), if *begins > 0.0 { "above" } else { "below" });
-            let message = format!("{what} begins {way} mm {side} its tip");
-            self.fault(
-                "machine-body",
-                z.span(),
-                message,
-                "z counts from the tip up: the first point is [0, r]",
-            );
-        }
-        profile
-    }
-
-    /// The points of a holder: they go down from the gauge point.
-    pub(super) fn holder(&mut self, what: &str, points: &[[KeyedNumber; 2]]) -> Vec<[f64; 2]> {
-        let profile = self.profile(what, points);
-        if let ([.., [z, _]], Some([ends, _])) = (points, profile.last())
-            && *ends <= 0.0
-        {
-            let message = format!(
-                "{what} ends at z = {} mm: no part of it is below the gauge point",
-                Short(*ends)
-            );
-            self.fault(
-                "machine-body",
-                z.span(),
-                message,
-                "z counts from the gauge point down, towards the tip",
-            );
-        }
-        profile
-    }
-
-    /// The points of a profile, in the order of z; its radii are no less than zero.
-    fn profile(&mut self, what: &str, points: &[[KeyedNumber; 2]]) -> Vec<[f64; 2]> {
-        let mut profile: Vec<[f64; 2]> = Vec::with_capacity(points.len());
-        for [z, r] in points {
-            let [along, radius] = [z, r].map(|number| self.number(number));
-            if radius < 0.0 {
-                let message = format!("{what} has the radius {radius} mm, below zero");
-                self.fault("machine-body", r.span(), message, "points are [z, r]");
-            }
-            if let Some([before, _]) = profile.last().filter(|[before, _]| along < *before) {
-                let message =
-                    format!("{what} goes back, from z = {} to {} mm", Short(*before), Short(along));
-                self.fault("machine-body", z.span(), message, "points [z, r] in the order of z");
-            }
-            profile.push([along, radius]);
-        }
-        if let [[z, _]] = points {
-            let message = format!("{what} has one point");
-            self.fault(
-                "machine-body",
-                z.span(),
-                message,
-                "two points [z, r] make a cylinder or a cone",
-            );
-        }
-        profile
     }
 }

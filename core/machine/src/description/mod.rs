@@ -25,6 +25,7 @@ mod mode;
 mod motion;
 mod numbers;
 mod options;
+mod outline;
 mod plan;
 mod profile;
 mod program;
@@ -41,6 +42,7 @@ mod spindle;
 mod stock;
 pub(crate) mod table;
 mod tools;
+mod turned;
 mod wait;
 mod word;
 
@@ -53,7 +55,7 @@ use nalgebra::Vector3;
 pub use accuracy::{AccuracyRules, ControlPoint, SHARE_AT_POLES};
 pub use arcs::Arcs;
 pub use bodies::{
-    BodyPair, ClearanceRules, GivenBody, GivenShape, KeptPair, RapidAxes, ToolOutline,
+    BodyPair, ClearanceRules, GivenBody, GivenShape, KeptPair, RapidAxes,
 };
 pub use build::{Evaluated, MachineReading, examine, load};
 pub use choice::{Retract, Rewind, SolutionCriterion, SolutionRules};
@@ -69,6 +71,7 @@ pub use layers::{Source, readable};
 pub use length::LengthAxis;
 pub use limits::MOST_BYTES;
 pub use motion::{BlendRule, CornerRule, LimitsActOn, MotionRules, RapidRule};
+pub use outline::ToolOutline;
 pub use plan::{PlanRules, PlanSolver};
 pub use profile::{NumberOrigin, Profile, StatedNumber, stated_numbers};
 pub use program::{ProgramRules, ProgramText, TextPlace};
@@ -79,6 +82,7 @@ pub use solids::Solid;
 pub use spindle::{SpindleSpeeds, surface_rpm};
 pub use stock::StockCut;
 pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
+pub use turned::{NoArc, TurnedProfile};
 
 use crate::along_word::AlongWord;
 use crate::dependent_limit::DependentLimit;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::bodies::{ToolOutline, ToolOutlineFile};
+use super::outline::{ToolOutline, ToolOutlineFile};
 use super::build::Builder;
 use super::file::OutputUnits;
 use super::quantity::KeyedNumber;

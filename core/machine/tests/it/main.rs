@@ -21,6 +21,7 @@ mod machine_file;
 mod place;
 mod servo;
 mod tilted_plane;
+mod turned;
 mod units;
 
 use post_machine::description::Source;

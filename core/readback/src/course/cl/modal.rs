@@ -282,8 +282,8 @@ impl ClModal {
             Statement::SelectTool(number) if self.tools.loaded() != Some(*number) => {
                 self.tell(record, ProgramEvent::Preselect(*number), out);
             }
-            Statement::ToolData { numbers, .. } => return self.cutter(numbers, 2),
-            Statement::Cutter(numbers) => return self.cutter(numbers, 6),
+            Statement::ToolData { kinds, numbers } => return self.tool_data(kinds, numbers),
+            Statement::Cutter(numbers) => return self.apt_cutter(numbers),
             Statement::WorkOffset { number, set } => {
                 return self.work_offset(record, *number, *set, out);
             }

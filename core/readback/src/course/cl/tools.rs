@@ -11,6 +11,9 @@ use crate::{ProgramEvent, SpindleState};
 /// No file has more tools.
 const MOST_TOOLS: usize = 1_000;
 
+/// A middle of a corner that is no farther from where a plain corner has it is there, units of the file.
+const SAME_CORNER: f64 = 1e-4;
+
 /// A tool as the CL file has it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClTool {
@@ -23,6 +26,8 @@ pub struct ClTool {
     pub length: Option<f64>,
     /// Diameter of its cutter, mm, where the file describes it before it loads the tool.
     pub diameter: Option<f64>,
+    /// Radius of its corner, mm, where the file describes an end that is flat but for it and a side along the axis; else 0.
+    pub corner_radius: f64,
     /// Its name, empty if it has none.
     pub name: String,
     /// Line that loads it first.
@@ -45,6 +50,7 @@ pub(super) struct ClTools {
     diameter: Option<f64>,
     /// Likewise, for the tool that is loaded next.
     next_diameter: Option<f64>,
+    next_corner: f64,
     length: Option<f64>,
     name: String,
     rpm: Option<f64>,
@@ -88,12 +94,32 @@ impl ClTools {
 }
 
 impl ClModal {
+    /// TLDATA: diameter, corner radius, length, taper of the side, angle of the end.
+    pub(super) fn tool_data(&mut self, kinds: &[String], numbers: &[f64]) -> RecordResult {
+        let mill = kinds.iter().any(|kind| kind == "MILL");
+        let straight = numbers.iter().skip(3).all(|angle| *angle == 0.0);
+        let corner = numbers.get(1).filter(|_| mill && straight);
+        self.cutter(numbers, 2, corner.copied())
+    }
+
+    /// CUTTER: diameter, corner radius, where its middle is from the axis and above the tip, angles of end and side, length.
+    pub(super) fn apt_cutter(&mut self, numbers: &[f64]) -> RecordResult {
+        let of = |place: usize| numbers.get(place).copied();
+        let corner = of(1).filter(|corner| {
+            let plain = [0.5 * numbers[0] - corner, *corner, 0.0, 0.0];
+            let told = numbers.iter().skip(2).zip(plain);
+            told.into_iter().all(|(told, plain)| libm::fabs(told - plain) <= SAME_CORNER)
+        });
+        self.cutter(numbers, 6, corner)
+    }
+
     /// A cutter's description; its length stands at `length` among the numbers.
-    pub(super) fn cutter(&mut self, numbers: &[f64], length: usize) -> RecordResult {
+    fn cutter(&mut self, numbers: &[f64], length: usize, corner: Option<f64>) -> RecordResult {
         let of = |place: usize| numbers.get(place).map(|size| size * self.scale);
         let (diameter, length_of) = (of(0), of(length));
         self.tools.diameter = diameter;
         self.tools.next_diameter = diameter;
+        self.tools.next_corner = corner.map_or(0.0, |corner| corner * self.scale);
         self.tools.length = length_of;
         if self.settings.tool_from_cutter {
             let cutter = (length, numbers.to_vec(), self.tools.name.clone());
@@ -199,11 +225,12 @@ impl ClModal {
                 register,
                 length: length.or(described),
                 diameter: self.tools.next_diameter,
+                corner_radius: self.tools.next_corner,
                 name: self.tools.name.clone(),
                 line: record.line,
             });
         }
-        self.tools.next_diameter = None;
+        (self.tools.next_diameter, self.tools.next_corner) = (None, 0.0);
         self.lost();
         if self.tools.left.take() == loaded {
             return Ok(());

@@ -42,6 +42,7 @@ mod languages;
 mod lengths;
 mod library;
 #[cfg(target_os = "linux")]
+mod leaning_axes;
 mod lint;
 mod linuxcnc;
 mod lsp;

@@ -7,6 +7,9 @@ use post_motion::path::{BSpline, Curve, Interpolation, Stance, turns};
 /// Of a piece as short as this of a way it is known how its axes go, or never will be.
 const SHORTEST: f64 = 1.0 / 1024.0;
 
+/// Spans of a spline that a piece is looked at in; of one with more their hull counts.
+const MOST_SPANS: usize = 8;
+
 /// How a machine goes from one stance to another.
 #[derive(Clone, Copy, Debug)]
 pub struct Way<'a> {
@@ -171,25 +174,52 @@ impl Way<'_> {
                 Some(bend * (to - from) * (to - from) / 8.0)
             }
             Curve::Spline(spline) => {
-                let stray = hull(spline, [from, to]);
+                let stray = spline_stray(spline, [from, to]);
                 stray.is_finite().then_some(stray)
             }
         }
     }
 }
 
-/// Diameter of a box of the poles that the spline depends on between two shares, mm: it stays within their hull, as its
-/// weights lie above zero, and so does the line between its ends.
-fn hull(spline: &BSpline, share: [f64; 2]) -> f64 {
+/// No point of a spline between two shares is farther from where the line between its ends is at the same share, mm.
+fn spline_stray(spline: &BSpline, share: [f64; 2]) -> f64 {
     let [first, last] = spline.range();
-    let [from, to] = share.map(|share| first + (last - first) * share);
-    let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-    for (place, (pole, _)) in spline.poles.iter().enumerate() {
-        let ends = [place, place + spline.degree + 1].map(|knot| spline.knots.get(knot));
-        let [Some(begins), Some(ends)] = ends else { return f64::INFINITY };
-        if *begins <= to && *ends >= from {
-            (low, high) = (low.inf(pole), high.sup(pole));
+    let [from, to] = share.map(|share| (first + (last - first) * share).clamp(first, last));
+    let knots = &spline.knots[spline.degree..=spline.poles.len()];
+    let begins = knots.partition_point(|knot| *knot <= from).max(1) - 1;
+    let ends = knots.partition_point(|knot| *knot < to);
+    if ends - begins > MOST_SPANS {
+        return hull(&spline.poles[begins..(ends + spline.degree).min(spline.poles.len())]);
+    }
+    let (start, way) = (spline.point(from), spline.point(to) - spline.point(from));
+    let on_line = |at: f64| start + way * ((at - from) / (to - from));
+    let mut most = 0.0f64;
+    for place in begins..ends {
+        let [low, high] = [knots[place].max(from), knots[place + 1].min(to)];
+        if low >= high {
+            continue;
         }
+        let part = spline.part(spline.degree + place, [low, high]);
+        let weights = part.iter().map(|(_, weight)| *weight);
+        let (least, largest) = weights
+            .fold((f64::INFINITY, 0.0f64), |(least, most), weight| (least.min(weight), most.max(weight)));
+        let off = part.iter().enumerate().map(|(index, (pole, _))| {
+            let at = low + (high - low) * index as f64 / spline.degree as f64;
+            (pole - on_line(at)).norm()
+        });
+        // With weights that differ the poles count otherwise than on the line, which is no farther than its middle is from an end.
+        let uneven = 0.5 * (on_line(high) - on_line(low)).norm() * (largest / least - 1.0);
+        most = most.max(off.fold(0.0, f64::max) + uneven);
+    }
+    most
+}
+
+/// Diameter of a box of poles, mm: a spline stays within their hull, as its weights lie above zero, and so does the line
+/// between its ends.
+fn hull(poles: &[(Vector3<f64>, f64)]) -> f64 {
+    let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    for (pole, _) in poles {
+        (low, high) = (low.inf(pole), high.sup(pole));
     }
     (high - low).norm()
 }

@@ -1,5 +1,6 @@
 //! How a control goes from one stance of the machine to another.
 
+mod arc_spline;
 mod chords;
 mod curve;
 mod round;

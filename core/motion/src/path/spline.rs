@@ -104,6 +104,17 @@ impl<const D: usize> BSpline<D> {
         point / weight
     }
 
+    /// Control points and weights of the part of a span, which begins with a knot, between two parameters: the part stays
+    /// in their hull.
+    pub fn part(&self, span: usize, [from, to]: [f64; 2]) -> Vec<(SVector<f64, D>, f64)> {
+        let control = |ups: usize| {
+            let parameter = |level: usize| if level < ups { to } else { from };
+            let (point, weight) = self.de_boor(self.degree, span, self.control(span), parameter);
+            (point / weight, weight)
+        };
+        (0..=self.degree).map(control).collect()
+    }
+
     /// The point at `u`, which is moved into the range, and its first to third derivative. At a knot they are those after it.
     pub fn derivatives(&self, u: f64) -> [SVector<f64, D>; 4] {
         let [first, last] = self.range();

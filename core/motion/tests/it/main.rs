@@ -1,6 +1,7 @@
 //! How machines move, held against closed forms and brute force.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod arc_spline;
 mod contour;
 mod contour_limit;
 mod servo;

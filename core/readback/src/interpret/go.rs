@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use post_machine::axis_words::is_depth;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
+use post_motion::path::BSpline;
 use std::f64::consts::TAU;
 
 use super::state::{AxisLetters, ControlState, OrientationMode};
@@ -11,6 +12,9 @@ use crate::{BlockEffect, Curve, Interpolation, Motion, MotionKind, Stance};
 
 /// A tip that the axes miss by more than this is not reached, mm.
 pub(super) const REACHED: f64 = 1e-6;
+
+/// Most turns of an arc by axes that do not stand across one another: it is followed as a spline.
+const MOST_LEANING: f64 = 1_000.0;
 
 /// A vector is reached if the tool axis misses it by no more than this, radians: vectors have few decimals.
 const AIMED: f64 = 1e-4;
@@ -459,10 +463,15 @@ impl ControlState {
             .iter()
             .all(|(a, b)| libm::fabs(ways[*a].dot(&ways[*b])) < 1e-9);
         if !across {
-            return Err(self.refuse(
-                "nc-arc",
-                "X, Y and Z of this machine do not stand across one another: an arc of their positions is no arc of the tip",
-            ));
+            if libm::fabs(sweep) > MOST_LEANING * TAU {
+                let message = format!(
+                    "X, Y and Z of this machine do not stand across one another, and the arc has more than {MOST_LEANING} turns"
+                );
+                return Err(self.refuse("nc-arc", message));
+            }
+            // The control keeps to the circle in its words, and the tip to what the axes make of it.
+            let ends = [from, &self.at].map(|stance| self.program_point_of(&stance.joints));
+            return Ok(self.spline_way(from, &BSpline::of_arc(ends, centre, normal, sweep)));
         }
         let direction =
             |vector: Vector3<f64>| ways[0] * vector.x + ways[1] * vector.y + ways[2] * vector.z;

@@ -148,6 +148,35 @@ fn a_shank_may_be_where_edges_were_on_the_same_line() {
     assert_contains(&said, &["stock hits shank T1"]);
 }
 
+/// One plunge deeper than the edges are long, in one block as in two: the shank comes where these have cut before it.
+#[test]
+fn a_shank_follows_the_edges_down_a_hole() {
+    let plunge = |more: &str| program("").split("G0 X-20.").next().unwrap().to_owned() + more + "\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n";
+    let cutter = |points: &str, edge: u32| format!("cutter = {points}\nedge = {edge}");
+    let straight = "[[0, 5], [40, 5]]";
+    for (points, edge, down, clear) in [
+        (straight, 7, "G1 Z-25. F300.", true),
+        (straight, 7, "G1 Z-12. F300.\nG1 Z-25.", true),
+        (straight, 7, "G1 Z-3. F300.\nG1 Z-25.", true),
+        ("[[0, 0], [5, 5, { arc = 5 }], [40, 5]]", 7, "G1 Z-25. F300.", true),
+        // A drill whose edges end below where it is as thick as it gets.
+        ("[[0, 0], [3, 5], [40, 5]]", 2, "G1 Z-25. F300.", false),
+        ("[[0, 5], [7, 5], [7, 4.5], [40, 4.5]]", 7, "G1 Z-25. F300.", true),
+        ("[[0, 5], [7, 5], [7, 5.2], [40, 5.2]]", 7, "G1 Z-25. F300.", false),
+        // A collar that stays above the hole, and one that does not.
+        ("[[0, 5], [26, 5], [26, 8], [40, 8]]", 7, "G1 Z-25. F300.", true),
+        ("[[0, 5], [24, 5], [24, 8], [40, 8]]", 7, "G1 Z-25. F300.", false),
+        // Sideways in the depth the shank meets what no edge has cut.
+        (straight, 7, "G1 Z-25. F300.\nX3.\nG0 X0.", false),
+        // While the spindle turns back nothing is cut for certain.
+        (straight, 7, "M4\nG1 Z-25. F300.", false),
+    ] {
+        let mine = machine("cut = true", &cutter(points, edge));
+        let (_, said, found) = proven(&mine, &plunge(down), &[]);
+        assert_eq!(found, clear, "{points} {down}: {said}");
+    }
+}
+
 /// A ring about the nose of the spindle, 10 mm above the tip of the second tool.
 #[test]
 fn other_bodies_are_held_against_what_is_left() {

@@ -142,6 +142,29 @@ impl Been {
         heights.free(&self.over([from, to]), axial, [height, needed]) >= needed
     }
 
+    /// A way straight down along the tool axis on which edges, up to a height above the tip, cut before what is above them
+    /// comes there, mm: this is no thicker, and what of it stays above where they began is clear of what may be left, or has
+    /// been there before.
+    pub fn leads(&self, field: &mut Field, edge: f64, [from, to]: [ToolPose; 2]) -> bool {
+        let Some(heights) = self.heights else { return false };
+        let (axial, climb) = climb(&from, &to);
+        if !axial || climb >= 0.0 || heights.full > edge {
+            return false;
+        }
+        // As high as they are as thick as they get, and from where on the tool is thicker, above where it begins and ends.
+        let cut = heights.thins.min(edge);
+        if heights.thickens >= heights.top && self.covers_above(cut, [from; 2]) {
+            return true;
+        }
+        let low = cut.min(heights.thickens + climb);
+        if low >= heights.top {
+            return true;
+        }
+        let ends = [low, heights.top].map(|height| from.tip + from.axis * height);
+        let rest = Convex::frustum(ends, from.axis, [heights.widest; 2]);
+        field.apart(&[rest]).at_least > 0.0
+    }
+
     /// A straight way without turning that is free: it goes where it has been before, or above that along its axis, and what
     /// sticks out above is nowhere in what may be left, as far as that is known.
     pub fn covers(&self, field: Option<&mut Field>, [from, to]: [ToolPose; 2]) -> bool {

@@ -502,13 +502,17 @@ impl CutStock {
         let above = straight
             .filter(|_| shank)
             .is_some_and(|poses| self.been.covers_above(tool.edge, poses));
+        // Straight down it comes where they have cut on the same way.
+        let led = straight
+            .filter(|_| shank)
+            .is_some_and(|poses| self.been.leads(&mut self.field, tool.edge, poses));
         // Behind edges that go down or sideways a shank comes into what they have cut.
         let sinks = straight.is_some_and(|[from, to]| (to.tip - from.tip).dot(&from.axis) <= 0.0);
         let follows = |part: &Part| cuts && sinks && part.kind == PartKind::Shank;
         let spared = |part: &Part| match part.kind {
             PartKind::Holder => false,
             PartKind::Cutter => cuts || been,
-            PartKind::Shank => been || above,
+            PartKind::Shank => been || above || led,
         };
         let (behind, ahead): (Vec<_>, Vec<_>) =
             tool.parts.iter_mut().filter(|part| !spared(part)).partition(|part| follows(part));

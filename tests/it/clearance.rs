@@ -504,6 +504,22 @@ fn bodies_that_cannot_be_are_refused_by_their_line() {
         ("[clearance]\nkeep = -1\n", "[clearance] keep is -1 mm"),
         ("[fixture.stock]\nblock = [[0, 0, 0], [9, 9, 9]]\n", "a fixture cannot be called stock"),
         ("[fixture.A]\nblock = [[0, 0, 0], [9, 9, 9]]\n", "a fixture cannot be called A"),
+        (
+            "[fixture.\"cutter T1\"]\nblock = [[0, 0, 0], [9, 9, 9]]\n",
+            "a fixture cannot be called cutter T1",
+        ),
+        (
+            "[fixture.a]\ncylinder = [[0, 0, 5], [0, 0, 5]]\nradius = 3\n",
+            "a has no length between the ends of its cylinder",
+        ),
+        (
+            "[clearance]\nignore = [[\"holder T9\", \"b\"]]\n",
+            "[clearance] names holder T9, and no holder of tool 9 is drawn",
+        ),
+        (
+            "[clearance]\nignore = [[\"cutter T9\", \"b\"]]\n",
+            "[clearance] names cutter T9, and nothing describes tool 9",
+        ),
         ("[tools.4]\nholder = [[0, -5], [3, 5]]\n", "the holder of tool 4 has the radius -5 mm"),
         (
             "[tools.4]\ncutter = [[10, 5], [30, 5]]\n",

@@ -151,7 +151,11 @@ fn a_shank_may_be_where_edges_were_on_the_same_line() {
 /// One plunge deeper than the edges are long, in one block as in two: the shank comes where these have cut before it.
 #[test]
 fn a_shank_follows_the_edges_down_a_hole() {
-    let plunge = |more: &str| program("").split("G0 X-20.").next().unwrap().to_owned() + more + "\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n";
+    let plunge = |more: &str| {
+        program("").split("G0 X-20.").next().unwrap().to_owned()
+            + more
+            + "\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n"
+    };
     let cutter = |points: &str, edge: u32| format!("cutter = {points}\nedge = {edge}");
     let straight = "[[0, 5], [40, 5]]";
     for (points, edge, down, clear) in [
@@ -312,7 +316,10 @@ fn arcs_of_cutters_and_holders_are_true_to_size() {
 #[test]
 fn a_corner_radius_of_the_cl_file_counts() {
     let mine = machine("", "").replace("[tools.1]\nlength = 100\n", "[tools]\n1 = 100\n");
-    let mine = mine.replace("[40, 30, 0]]", "[40, 30, -20]]\n[fixture.rail]\nblock = [[-40, 9.5, -330], [40, 30, -299]]");
+    let mine = mine.replace(
+        "[40, 30, 0]]",
+        "[40, 30, -20]]\n[fixture.rail]\nblock = [[-40, 9.5, -330], [40, 30, -299]]",
+    );
     let program = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z20.\nT1 M6\nS3000 M3\nG54\nG0 X-60. Y0.\nG43 H1 Z5.\n\
                    G0 Z0.\nG1 X60. F800.\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n";
     for (cutter, clear) in [
@@ -330,7 +337,8 @@ fn a_corner_radius_of_the_cl_file_counts() {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("mine.toml"), &mine).unwrap();
         fs::write(folder.path().join("part.nc"), program).unwrap();
-        fs::write(folder.path().join("part.cls"), format!("{cutter}\nLOADTL/1\nGOTO/0,0,0\n")).unwrap();
+        fs::write(folder.path().join("part.cls"), format!("{cutter}\nLOADTL/1\nGOTO/0,0,0\n"))
+            .unwrap();
         let words =
             ["clearance", "part.nc", "-m", "mine.toml", "--mount", "0,0,-300", "--cl", "part.cls"];
         let run = post_in(folder.path(), &words);

@@ -58,8 +58,16 @@ fn other_posts_arcs_are_read_and_held_against_the_cl_file() {
         let folder = folder(lean, 100.0);
         fs::write(folder.path().join("part.nc"), &program).unwrap();
         fs::write(folder.path().join("part.cls"), cl).unwrap();
-        let words =
-            ["verify", "part.nc", "-m", "mine.toml", "--mount", "0,0,-300", "--against", "part.cls"];
+        let words = [
+            "verify",
+            "part.nc",
+            "-m",
+            "mine.toml",
+            "--mount",
+            "0,0,-300",
+            "--against",
+            "part.cls",
+        ];
         let run = post_in(folder.path(), &words);
         let said = format!("{}{}", run.out, run.err);
         assert!(!said.contains("nc-arc"), "{said}");

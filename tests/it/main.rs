@@ -39,10 +39,10 @@ mod job_file;
 mod jobs;
 mod joined_files;
 mod languages;
-mod lengths;
-mod library;
 #[cfg(target_os = "linux")]
 mod leaning_axes;
+mod lengths;
+mod library;
 mod lint;
 mod linuxcnc;
 mod lsp;

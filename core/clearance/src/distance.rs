@@ -4,7 +4,7 @@
 //! one point to the other is that of two parallel planes which hold each piece on its own side, as far as the farthest
 //! points of both along it tell: their distance is a lower bound, however the direction was found.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::gjk::{CsoPoint, GJKResult, VoronoiSimplex, closest_points};
 use parry3d_f64::shape::SupportMap;
@@ -30,8 +30,8 @@ pub struct Apart {
     pub at_least: f64,
     /// They are no farther: the distance of two points of them; zero where they overlap.
     pub at_most: f64,
-    /// Where that is, in the frame of the first; nothing where they overlap.
-    pub point: Vector3<f64>,
+    /// Of each the point nearest to the other, in the frame of the first; nothing where they overlap.
+    pub points: [Vector3<f64>; 2],
     /// The pieces that are nearest.
     pub nearest: [usize; 2],
     /// Across the planes between them, from the first to the second, frame of the first; zero where there are none.
@@ -41,7 +41,7 @@ pub struct Apart {
 impl Apart {
     /// Nothing is known but that they may touch.
     pub(crate) fn touching(point: Vector3<f64>, nearest: [usize; 2]) -> Self {
-        Self { at_least: 0.0, at_most: 0.0, point, nearest, along: Vector3::zeros() }
+        Self { at_least: 0.0, at_most: 0.0, points: [point; 2], nearest, along: Vector3::zeros() }
     }
 }
 
@@ -74,20 +74,25 @@ pub fn of_convex(one: &Convex, other: &Convex) -> Apart {
     of_hulls(one, other, &Placement::identity(), None)
 }
 
-/// A point that is nearly in both of the pieces that `apart` says are nearest, if they overlap, in the frame of the first
-/// shape.
-pub(crate) fn common_point(
+/// A point of both pieces where they overlap, to within rounding; else of each the one that is nearest to the other.
+pub fn meeting(one: &Convex, other: &Convex) -> [Vector3<f64>; 2] {
+    let rounds = [one.round, other.round];
+    meet(&Seen(one, None), &Seen(other, None), rounds)
+}
+
+/// The same of the pieces that `apart` says are nearest, in the frame of the first shape.
+pub(crate) fn meeting_of(
     one: &Shape,
     other: &Shape,
     at: &Placement,
     apart: &Apart,
-) -> Vector3<f64> {
+) -> [Vector3<f64>; 2] {
     let pieces = (one.pieces.get(apart.nearest[0]), other.pieces.get(apart.nearest[1]));
     match pieces {
         (Some(one), Some(other)) if apart.along == Vector3::zeros() => {
-            common(&Seen(one, None), &Seen(other, Some(at)))
+            meet(&Seen(one, None), &Seen(other, Some(at)), [one.round, other.round])
         }
-        _ => apart.point,
+        _ => apart.points,
     }
 }
 
@@ -99,21 +104,17 @@ pub(crate) fn of_hulls<S: Support, T: Support>(
     at: &Placement,
     start: Option<Vector3<f64>>,
 ) -> Apart {
-    let pose = Pose::IDENTITY;
-    let round = one.round() + other.round();
+    let rounds = [one.round(), other.round()];
+    let round = rounds[0] + rounds[1];
     let (one, other) = (Seen(one, None), Seen(other, Some(at)));
     let (from, to) = (one.centre(), other.centre());
     let start = start.or_else(|| (to - from).try_normalize(1e-12)).unwrap_or_else(Vector3::x);
-    let mut simplex = VoronoiSimplex::new();
-    let start = Vector::new(start.x, start.y, start.z);
-    simplex.reset(CsoPoint::from_shapes(&pose, &one, &other, start));
-    let found = closest_points(&pose, &one, &other, f64::MAX, true, &mut simplex);
-    let of = |vector: Vector| Vector3::new(vector.x, vector.y, vector.z);
+    let (found, _) = search(&one, &other, start);
     let mut apart = Apart::touching((from + to) * 0.5, [0; 2]);
     let along = match found {
         GJKResult::ClosestPoints(first, last, along) => {
             let (first, last) = (of(first), of(last));
-            apart.point = (first + last) * 0.5;
+            apart.points = facing([first, last], rounds);
             apart.at_most = ((last - first).norm() - round).max(0.0);
             [last - first, of(along)]
         }
@@ -137,9 +138,75 @@ pub(crate) fn of_hulls<S: Support, T: Support>(
     apart
 }
 
+fn of(vector: Vector) -> Vector3<f64> {
+    Vector3::new(vector.x, vector.y, vector.z)
+}
+
+/// The search for the nearest points from a direction on, and the simplex that it ends with.
+fn search<S: Support, T: Support>(
+    one: &Seen<'_, S>,
+    other: &Seen<'_, T>,
+    start: Vector3<f64>,
+) -> (GJKResult, VoronoiSimplex) {
+    let mut simplex = VoronoiSimplex::new();
+    let start = Vector::new(start.x, start.y, start.z);
+    simplex.reset(CsoPoint::from_shapes(&Pose::IDENTITY, one, other, start));
+    let found = closest_points(&Pose::IDENTITY, one, other, f64::MAX, true, &mut simplex);
+    (found, simplex)
+}
+
+/// Where two points of cores face one another all that is within `rounds` of these: on the surface of each, or in both.
+fn facing([first, last]: [Vector3<f64>; 2], rounds: [f64; 2]) -> [Vector3<f64>; 2] {
+    let off = last - first;
+    let (far, round) = (off.norm(), rounds[0] + rounds[1]);
+    match far > round {
+        true => [first + off * (rounds[0] / far), last - off * (rounds[1] / far)],
+        false if round > 0.0 => [first + off * (rounds[0] / round); 2],
+        false => [first; 2],
+    }
+}
+
+/// A point of both sets where they overlap; else of each the one that is nearest to the other.
+fn meet(one: &Seen<'_, Convex>, other: &Seen<'_, Convex>, rounds: [f64; 2]) -> [Vector3<f64>; 2] {
+    let start = other.centre() - one.centre();
+    let start = start.try_normalize(1e-12).unwrap_or_else(Vector3::x);
+    let (found, simplex) = search(one, other, start);
+    match found {
+        GJKResult::ClosestPoints(first, last, _) => facing([of(first), of(last)], rounds),
+        GJKResult::Intersection => {
+            let [first, last] = in_simplex(&simplex);
+            match (first - last).norm() <= ALLOWANCE {
+                true => [(first + last) * 0.5; 2],
+                false => [between(one, other); 2],
+            }
+        }
+        GJKResult::NoIntersection(_) | GJKResult::Proximity(_) => [between(one, other); 2],
+    }
+}
+
+/// The points of both sets whose difference is the origin: the corners of the simplex of differences that holds it, weighted
+/// as they hold it.
+fn in_simplex(simplex: &VoronoiSimplex) -> [Vector3<f64>; 2] {
+    let count = simplex.dimension() + 1;
+    let corners: Vec<&CsoPoint> = (0..count).map(|place| simplex.point(place)).collect();
+    let first = of(corners[0].point);
+    let ways = Matrix3::from_fn(|row, column| {
+        corners.get(column + 1).map_or(0.0, |corner| (of(corner.point) - first)[row])
+    });
+    let shares = ways.svd(true, true).solve(&-first, 1e-12).unwrap_or_else(|_| Vector3::zeros());
+    let mut shares = [1.0 - shares.sum(), shares.x, shares.y, shares.z].map(|share| share.max(0.0));
+    let sum: f64 = shares.iter().take(count).sum();
+    shares.iter_mut().for_each(|share| *share /= sum);
+    let point = |of_set: fn(&CsoPoint) -> Vector| {
+        let parts = corners.iter().zip(shares);
+        parts.map(|(corner, share)| of(of_set(corner)) * share).sum()
+    };
+    [point(|corner| corner.orig1), point(|corner| corner.orig2)]
+}
+
 /// A point that is nearly in both of two pieces that overlap: from the middle of each towards the other, by the points of
 /// both that are farthest on the way (Frank, Wolfe 1956).
-fn common(one: &Seen<'_, Convex>, other: &Seen<'_, Convex>) -> Vector3<f64> {
+fn between(one: &Seen<'_, Convex>, other: &Seen<'_, Convex>) -> Vector3<f64> {
     let (mut here, mut there) = (one.centre(), other.centre());
     for _ in 0..STEPS {
         let off = there - here;

@@ -201,8 +201,9 @@ fn spline_stray(spline: &BSpline, share: [f64; 2]) -> f64 {
         }
         let part = spline.part(spline.degree + place, [low, high]);
         let weights = part.iter().map(|(_, weight)| *weight);
-        let (least, largest) = weights
-            .fold((f64::INFINITY, 0.0f64), |(least, most), weight| (least.min(weight), most.max(weight)));
+        let (least, largest) = weights.fold((f64::INFINITY, 0.0f64), |(least, most), weight| {
+            (least.min(weight), most.max(weight))
+        });
         let off = part.iter().enumerate().map(|(index, (pole, _))| {
             let at = low + (high - low) * index as f64 / spline.degree as f64;
             (pole - on_line(at)).norm()

@@ -67,7 +67,7 @@ pub struct Fault {
     pub at_most: f64,
     /// What is to be kept there, mm.
     pub keep: f64,
-    /// The place, mm, frame of the link of the first body.
+    /// The place on the first body, mm, frame of its link: nearest to the other, or in both.
     pub point: Vector3<f64>,
 }
 
@@ -361,7 +361,7 @@ impl Pair {
             && apart.at_most > 0.0
             && let Some(point) = distance::encloses(one, other, &at)
         {
-            return Apart { at_least: 0.0, at_most: 0.0, point, ..apart };
+            return Apart { at_least: 0.0, at_most: 0.0, points: [point; 2], ..apart };
         }
         self.placed(apart, shapes, &at)
     }
@@ -370,7 +370,7 @@ impl Pair {
     fn placed(&self, mut apart: Apart, [one, other]: [&Shape; 2], at: &Placement) -> Apart {
         let told = self.result.fault.as_ref().is_some_and(|fault| fault.verdict == Verdict::Hits);
         if apart.at_most <= 0.0 && !told {
-            apart.point = distance::common_point(one, other, at, &apart);
+            apart.points = distance::meeting_of(one, other, at, &apart);
         }
         apart
     }
@@ -584,7 +584,7 @@ impl Pair {
                 joints: *joints,
                 at_most: apart.map_or(f64::INFINITY, |apart| apart.at_most),
                 keep: trial.keep,
-                point: apart.map_or_else(Vector3::zeros, |apart| apart.point),
+                point: apart.map_or_else(Vector3::zeros, |apart| apart.points[0]),
             });
         }
     }

@@ -165,6 +165,12 @@ pub struct ProgramOutcome {
 }
 
 impl ProgramOutcome {
+    /// Its summary counts warnings besides those of posting.
+    fn warns(&mut self, findings: &[Diagnostic]) {
+        let warnings = findings.iter().filter(|finding| finding.severity == Severity::Warning);
+        self.report.warnings.extend(warnings.map(|warning| warning.message.clone()));
+    }
+
     /// What its summary tells.
     pub fn told(&self) -> SummaryJson<'_> {
         SummaryJson {
@@ -332,6 +338,7 @@ impl<'a> ProgramMaker<'a> {
             let mut hear = near.as_mut().map(|near| |heard: &Heard| near.hear(heard));
             let hear = hear.as_mut().map(|hear| hear as &mut Hearer<'_>);
             let mut proven = self.prove(part, outcome.moved, source, program, hear)?;
+            outcome.warns(&proven.findings);
             findings.append(&mut proven.findings);
             if findings.iter().any(|finding| finding.severity == Severity::Error) {
                 return Err(std::mem::take(findings).into());
@@ -345,6 +352,7 @@ impl<'a> ProgramMaker<'a> {
             }
             let program = ProgramInput { name: text.name(), text: text.reread()? };
             let predicted = self.predict(part, None, source, heard.as_mut(), program)?;
+            outcome.warns(&predicted.findings);
             findings.extend(predicted.findings);
             outcome.prediction = Some(predicted.found);
         }

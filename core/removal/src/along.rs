@@ -171,7 +171,7 @@ pub struct Place {
     pub joints: Joints,
     /// It is no farther from what may be left, mm; infinite where that is not known.
     pub at_most: f64,
-    /// The place, mm, frame of the field.
+    /// The place in what may be left, mm, frame of the field.
     pub point: Vector3<f64>,
 }
 
@@ -268,7 +268,7 @@ impl Watched {
             }
             let at = self.mounted.placement(&joints);
             let apart = self.apart(field, &at, &[]);
-            let place = Place { joints, at_most: apart.at_most, point: apart.point };
+            let place = Place { joints, at_most: apart.at_most, point: apart.points[1] };
             if apart.at_most < keep {
                 // Whether axes that go for themselves come by there hangs on how fast each of them is.
                 let common = (!piece.independent).then(|| match &self.profile {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_clearance::ALLOWANCE;
 use post_clearance::convex::Convex;
-use post_clearance::distance::{Apart, of_convex};
+use post_clearance::distance::{Apart, meeting, of_convex};
 
 use crate::field::{Field, TILE};
 use crate::rays::{Span, Stretch, within};
@@ -29,7 +29,7 @@ impl Field {
         let nothing = Apart {
             at_least: f64::INFINITY,
             at_most: f64::INFINITY,
-            point: Vector3::zeros(),
+            points: [Vector3::zeros(); 2],
             nearest: [0; 2],
             along: Vector3::zeros(),
         };
@@ -99,7 +99,7 @@ impl Field {
                     let ends = ends.map(|z| Vector3::new(x, y, z));
                     let line = Convex::frustum(ends, Vector3::z(), [0.0; 2]);
                     let meets = of_convex(piece, &line).at_most <= 0.0;
-                    meets.then(|| line.core.towards(piece.core.centre()))
+                    meets.then(|| meeting(piece, &line)[1])
                 })
             })
         })

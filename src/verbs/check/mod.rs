@@ -113,7 +113,10 @@ pub fn run(session: &Session, arguments: &CheckArguments) -> Result<(), Failure>
     job::try_opening(machine, finder, arguments.tool_length)?;
     match &arguments.nominal {
         Some(nominal) => with_nominal(session, arguments, machine, nominal),
-        None => alone(session, arguments, machine),
+        None => {
+            let told = unused_options::found(machine, finder);
+            alone(session, arguments, machine, &told)
+        }
     }
 }
 
@@ -139,14 +142,20 @@ fn commission(
     Ok(())
 }
 
-/// What one machine file means.
-fn alone(session: &Session, arguments: &CheckArguments, machine: &Machine) -> Result<(), Failure> {
+/// What one machine file means; some warnings are `told` already.
+fn alone(
+    session: &Session,
+    arguments: &CheckArguments,
+    machine: &Machine,
+    told: &[Diagnostic],
+) -> Result<(), Failure> {
     let mut check = job::derive(machine, arguments.tool_length)?;
     let mut findings = check.findings();
     let mut solids = report::solids::faults(machine);
     solids.extend(clearance::of_machine(machine));
-    let messages = solids.iter().map(|fault| fault.message.clone());
-    check.warnings.extend(messages);
+    let warnings = solids.iter().filter(|fault| fault.severity == Severity::Warning);
+    let warnings = told.iter().chain(warnings);
+    check.warnings.extend(warnings.map(|fault| fault.message.clone()));
     findings.extend(solids);
     let picture = arguments.svg.as_ref().map(|_| reach_picture::draw(&check));
     let bodies = arguments.bodies.as_ref().map(|_| bodies_picture::draw(machine));

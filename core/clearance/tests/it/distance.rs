@@ -2,7 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use post_clearance::convex::Convex;
-use post_clearance::distance::{of_convex, of_shapes};
+use post_clearance::distance::{meeting, of_convex, of_shapes};
 use post_clearance::placement::Placement;
 use post_clearance::shape::Shape;
 use post_testkit::randomised;
@@ -33,6 +33,61 @@ fn closed_forms_of_balls_boxes_and_cylinders() {
         assert!(found.at_least <= wanted && wanted <= found.at_most + 1e-9, "{found:?} {wanted}");
         assert!(found.at_most - found.at_least < SAME, "{found:?} {wanted}");
     }
+}
+
+/// How far a point is outside of a box about the origin, and of a frustum, mm.
+fn off_block(point: Vector3<f64>, half: Vector3<f64>) -> f64 {
+    (point.abs() - half).sup(&Vector3::zeros()).norm()
+}
+
+fn off_cylinder(
+    point: Vector3<f64>,
+    from: Vector3<f64>,
+    axis: Vector3<f64>,
+    [long, radius]: [f64; 2],
+) -> f64 {
+    let arm = point - from;
+    let z = axis.dot(&arm);
+    ((arm - axis * z).norm() - radius).max(0.0).hypot((-z).max(z - long).max(0.0))
+}
+
+/// The place that is told of two bodies is on both where they overlap, and else on each, as far apart as they are.
+#[test]
+fn the_place_that_is_told_is_on_the_bodies() {
+    let (rounds, mut rng) = randomised(4000, 302);
+    let (mut over, mut beside) = (0, 0);
+    for _ in rounds {
+        let half = Vector3::from_fn(|_, _| rng.range(0.5, 60.0));
+        let block = Convex::block(-half, half);
+        let axis = Vector3::from_fn(|_, _| rng.range(-1.0, 1.0));
+        let Some(axis) = axis.try_normalize(1e-2) else { continue };
+        let from = Vector3::from_fn(|axis, _| half[axis] * rng.range(-1.5, 1.5));
+        let size = [rng.range(0.5, 80.0), rng.range(0.1, 30.0)];
+        let cylinder = Convex::frustum([from, from + axis * size[0]], axis, [size[1]; 2]);
+        let found = of_convex(&block, &cylinder);
+        let points = meeting(&block, &cylinder);
+        let off = |points: [Vector3<f64>; 2]| {
+            off_block(points[0], half).max(off_cylinder(points[1], from, axis, size))
+        };
+        if found.at_most <= 0.0 {
+            over += 1;
+            assert!(points[0] == points[1] && off(points) < 1e-5, "{points:?} {}", off(points));
+        } else {
+            beside += 1;
+            let apart = (points[1] - points[0]).norm();
+            assert!(off(points) < 1e-5 && (apart - found.at_most).abs() < 1e-5, "{points:?}");
+            assert!(off(found.points) < 1e-5, "{:?}", found.points);
+        }
+    }
+    assert!(over > 100 && beside > 100, "{over} {beside}");
+    // Of what is round the surface counts, and not the core.
+    let ball = Convex::ball(Vector3::zeros(), 3.0);
+    let [first, last] = of_convex(&ball, &Convex::ball(Vector3::x() * 10.0, 2.0)).points;
+    assert!(
+        (first - Vector3::x() * 3.0).norm() < 1e-6 && (last - Vector3::x() * 8.0).norm() < 1e-6
+    );
+    let [first, last] = meeting(&ball, &Convex::ball(Vector3::x() * 4.0, 2.0));
+    assert!(first == last && first.norm() < 3.0 && (first - Vector3::x() * 4.0).norm() < 2.0);
 }
 
 #[test]

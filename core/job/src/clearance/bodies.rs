@@ -9,7 +9,9 @@ use post_clearance::convex::Convex;
 use post_clearance::placement::Placement;
 use post_clearance::proof::{Body, BodyKind};
 use post_clearance::shape::{MeshFaults, Shape};
-use post_machine::description::{GivenBody, GivenShape, Machine, Solid, ToolOutline, TurnedProfile};
+use post_machine::description::{
+    GivenBody, GivenShape, Machine, Solid, ToolOutline, TurnedProfile,
+};
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_report::solid;
 
@@ -114,8 +116,7 @@ pub(super) fn of_tool(
     let holder = outline.map_or(&[][..], |outline| &outline.holder.outer);
     let holder = Shape::turned(holder, machine.gauge, -machine.tool_axis);
     let cutter = tool.cutter();
-    let cutter =
-        cutter.and_then(|profile| Shape::turned(&profile.outer, tip, machine.tool_axis));
+    let cutter = cutter.and_then(|profile| Shape::turned(&profile.outer, tip, machine.tool_axis));
     let mut bodies = Vec::new();
     for (kind, what, shape) in
         [(BodyKind::Holder, "holder", holder), (BodyKind::Cutter, "cutter", cutter)]

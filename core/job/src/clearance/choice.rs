@@ -60,7 +60,7 @@ impl<'a> ChoiceBodies<'a> {
     /// # Errors
     /// A body that cannot be had.
     pub fn of(machine: &'a Machine, told: &mut Vec<Diagnostic>) -> Result<Self, Failure> {
-        let mut findings = names::unknown(machine);
+        let mut findings = names::unknown(machine, None);
         let fixed = bodies::of_machine(machine, &mut findings);
         if findings.iter().any(|finding| finding.severity == Severity::Error) {
             return Err(findings.into());

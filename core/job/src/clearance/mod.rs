@@ -135,7 +135,8 @@ pub fn prove(
 ) -> Result<ClearanceFound, Failure> {
     let machine = &control.machine;
     let mut findings = Vec::new();
-    let (bodies, stocks) = described(machine, &mut findings);
+    let called: Vec<u32> = facts.tools.iter().map(|tool| tool.number).collect();
+    let (bodies, stocks) = described(machine, Some(&called), &mut findings);
     let tools = facts.tools.iter();
     let sizes = tools.filter_map(|tool| Some((tool.number, [tool.diameter?, tool.corner_radius])));
     let cuts = Cuts { sizes: sizes.collect(), fastest: facts.fastest };
@@ -170,12 +171,14 @@ pub fn prove(
     Ok(found)
 }
 
-/// The bodies of a machine and the stocks that are cut, as they are proven. What is wrong with them is said, once.
+/// The bodies of a machine and the stocks that are cut, as they are proven; `called` are the tools of the program's CL
+/// file. What is wrong with them is said, once.
 fn described(
     machine: &Machine,
+    called: Option<&[u32]>,
     findings: &mut Vec<Diagnostic>,
 ) -> (Vec<Body>, Vec<left::CutStock>) {
-    findings.extend(names::unknown(machine));
+    findings.extend(names::unknown(machine, called));
     let bodies = bodies::of_machine(machine, findings);
     let mut again = Vec::new();
     let stocks = left::CutStock::all(machine, &mut again);
@@ -249,7 +252,7 @@ pub fn of_machine(machine: &Machine) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let mut findings: Vec<Diagnostic> = without_stock(machine).into_iter().collect();
-    let (all, _) = described(machine, &mut findings);
+    let (all, _) = described(machine, None, &mut findings);
     let lacks = without_body(machine);
     if !lacks.is_empty() {
         let message = format!("nothing is proven of what has no body: {}", lacks.join(", "));

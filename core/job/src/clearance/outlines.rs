@@ -29,14 +29,16 @@ fn lacking(machine: &Machine, outline: &ToolOutline) -> Vec<Diagnostic> {
     if !given && listed().is_none() {
         tell(
             format!(
-                "how long tool {number} is the machine file does not say: where its holder and cutter are is not known"
+                "how long tool {number} is the machine file does not say: a proof of a program that calls it is refused, unless the program or its offsets say it"
             ),
             "length = … under [tools.N]; else --offsets or --tool-length with each program",
         );
     }
     if outline.edge.is_some() && !drawn {
         tell(
-            format!("edge of tool {number} has no effect: its cutter is not drawn"),
+            format!(
+                "edge of tool {number} has no effect: its cutter is not drawn, and what it cuts is taken from no stock: a proof that leads into that is refused"
+            ),
             "cutter = [[z, r], …] under [tools.N] draws it",
         );
     }

@@ -59,7 +59,8 @@ pub fn edges(machine: &Machine) -> Vec<BodyEdges> {
         let number = outline.number;
         let length = machine.tools.iter().find(|(tool, _)| *tool == number);
         let tip = machine.gauge - machine.tool_axis * length.map_or(0.0, |(_, length)| *length);
-        let holder = given_bodies::turned(&outline.holder.points, machine.gauge, -machine.tool_axis);
+        let holder =
+            given_bodies::turned(&outline.holder.points, machine.gauge, -machine.tool_axis);
         let cutter = given_bodies::turned(&outline.cutter.points, tip, machine.tool_axis);
         for (what, edges) in [("holder", holder), ("cutter", cutter)] {
             all.push(BodyEdges { name: format!("{what} T{number}"), edges });

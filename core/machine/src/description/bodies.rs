@@ -28,6 +28,9 @@ const KINDS: [&str; 3] = ["stock", "holder", "cutter"];
 const RESOLUTION: Bounds =
     Bounds { table: "[stock] ", says: " mm", ..Bounds::above_zero("machine-body") };
 
+/// A cylinder is longer than this, mm: of a shorter one rounding says where it points.
+const SHORTEST: f64 = 1e-6;
+
 const RADIUS: Bounds = Bounds { says: " mm", ..Bounds::above_zero("machine-body") };
 
 words! {
@@ -219,9 +222,10 @@ impl Builder<'_> {
     ) -> Vec<GivenBody> {
         let bodies = file.iter().filter_map(|(name, body)| {
             let called = name.get_ref().as_str();
-            if KINDS.contains(&called) || link_of(called, axes).is_some() {
+            let first = called.split(' ').next().unwrap_or_default();
+            if KINDS.contains(&first) || first == "shank" || link_of(called, axes).is_some() {
                 let message = format!("a fixture cannot be called {called}: that is another body");
-                let help = "a name of your own; stock, holder, cutter, b, w, t and axis letters are taken, the stock is [stock]";
+                let help = "a name of your own; stock, holder, cutter, shank and what begins with these words, b, w, t and axis letters are taken, the stock is [stock]";
                 self.fault("machine-body", name.span(), message, help);
                 return None;
             }
@@ -268,8 +272,14 @@ impl Builder<'_> {
                 GivenShape::Block([one.inf(&other), one.sup(&other)])
             }
             (None, Some(ends), Some(radius), None) => {
-                let ends = ends.get_ref().each_ref().map(|end| self.vector(end));
-                GivenShape::Cylinder { ends, radius }
+                let [one, other] = ends.get_ref().each_ref().map(|end| self.vector(end));
+                if (other - one).norm() < SHORTEST {
+                    let message = format!("{name} has no length between the ends of its cylinder");
+                    let help = "the middles of both ends, which differ; a disc has its thickness";
+                    self.fault("machine-body", ends.span(), message, help);
+                    return None;
+                }
+                GivenShape::Cylinder { ends: [one, other], radius }
             }
             (None, None, None, Some(stl)) if stl.get_ref().is_empty() => return None,
             (None, None, None, Some(stl)) => GivenShape::File(self.stl_path("machine-body", stl)?),

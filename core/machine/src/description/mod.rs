@@ -54,9 +54,7 @@ use nalgebra::Vector3;
 
 pub use accuracy::{AccuracyRules, ControlPoint, SHARE_AT_POLES};
 pub use arcs::Arcs;
-pub use bodies::{
-    BodyPair, ClearanceRules, GivenBody, GivenShape, KeptPair, RapidAxes,
-};
+pub use bodies::{BodyPair, ClearanceRules, GivenBody, GivenShape, KeptPair, RapidAxes};
 pub use build::{Evaluated, MachineReading, examine, load};
 pub use choice::{Retract, Rewind, SolutionCriterion, SolutionRules};
 pub use cl_words::WordRule;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::outline::{ToolOutline, ToolOutlineFile};
 use super::build::Builder;
 use super::file::OutputUnits;
+use super::outline::{ToolOutline, ToolOutlineFile};
 use super::quantity::KeyedNumber;
 use super::table::{
     DeTable, DeValue, EntryError, Key, KeyType, Schemas, Spanned, Value, entries, keys,

@@ -69,8 +69,7 @@ impl TurnedProfile {
         let height = (size * size - 0.25 * chord * chord).max(0.0).sqrt();
         // To the right of the way from one end to the other is what the profile bounds.
         let side = if hollow { -height / chord } else { height / chord };
-        let centre =
-            [0.5 * (from[0] + to[0]) + side * dr, 0.5 * (from[1] + to[1]) - side * dz];
+        let centre = [0.5 * (from[0] + to[0]) + side * dr, 0.5 * (from[1] + to[1]) - side * dz];
         // Angles from the direction of z: with the clock from PI down to 0 if it bulges, else on from PI to two PI.
         let angle = |[z, r]: [f64; 2]| libm::atan2(r - centre[1], z - centre[0]);
         let [start, end] = match hollow {

@@ -31,7 +31,12 @@ fn a_ball_lies_between_its_outlines() {
     for size in [0.2, 5.0, 40.0] {
         let mut ball = TurnedProfile::from(vec![[0.0, 0.0]]);
         ball.arc_to([size, size], size).unwrap();
-        for (line, way) in ball.outer.windows(2).map(|line| (line, true)).chain(ball.inner.windows(2).map(|line| (line, false))) {
+        for (line, way) in ball
+            .outer
+            .windows(2)
+            .map(|line| (line, true))
+            .chain(ball.inner.windows(2).map(|line| (line, false)))
+        {
             let [near, far] = span(line, [size, 0.0]);
             match way {
                 true => assert!(near > size - 1e-9 && far < size + WITHIN, "{size} {line:?}"),
@@ -66,7 +71,10 @@ fn a_hollow_lies_between_its_outlines() {
     let fillet = square - 2.0 * std::f64::consts::PI * middle * quarter;
     let core = std::f64::consts::PI * 25.0 * 13.0;
     let (inner, outer) = (volume(&holder.inner), volume(&holder.outer));
-    assert!(inner < core + fillet && core + fillet < outer && outer - inner < 1.0, "{inner} {fillet} {outer}");
+    assert!(
+        inner < core + fillet && core + fillet < outer && outer - inner < 1.0,
+        "{inner} {fillet} {outer}"
+    );
 }
 
 /// A barrel goes out and in again: where it is widest all outlines have the radius.
@@ -84,12 +92,16 @@ fn a_barrel_is_as_wide_as_it_is() {
 
 #[test]
 fn what_is_no_arc_is_none() {
-    let arc = |from: [f64; 2], to: [f64; 2], radius: f64| TurnedProfile::from(vec![from]).arc_to(to, radius);
+    let arc = |from: [f64; 2], to: [f64; 2], radius: f64| {
+        TurnedProfile::from(vec![from]).arc_to(to, radius)
+    };
     assert_eq!(arc([0.0, 0.0], [6.0, 8.0], 4.9), Err(NoArc::Short(10.0)));
     assert_eq!(arc([0.0, 3.0], [0.0, 5.0], 4.0), Err(NoArc::Back));
     // The lower half of a ball that begins beside its pole.
     assert_eq!(arc([0.0, 3.0], [1.0, 10.0], 4.0), Err(NoArc::Back));
-    assert!(matches!(arc([0.0, 1.0], [8.0, 1.0], -5.0), Err(NoArc::Beyond(nearest)) if (nearest + 1.0).abs() < 1e-9));
+    assert!(
+        matches!(arc([0.0, 1.0], [8.0, 1.0], -5.0), Err(NoArc::Beyond(nearest)) if (nearest + 1.0).abs() < 1e-9)
+    );
     assert!(arc([0.0, 3.0], [8.0, 3.0], -5.0).is_ok());
 }
 

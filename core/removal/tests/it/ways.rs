@@ -216,7 +216,15 @@ fn no_body_is_clear_of_what_it_comes_near_to() {
                 assert!(depth(&profile, &case.pose(&place.joints), place.point) > -1e-3);
                 assert!(field.may_hold(place.point));
             }
-            Found::Unproven(_) => unproven += 1,
+            Found::Unproven(place) => {
+                unproven += 1;
+                // The place that is told is in what may be left.
+                let near = (0..27).any(|at| {
+                    let off = V::new(f64::from(at % 3), f64::from(at / 3 % 3), f64::from(at / 9));
+                    field.may_hold(place.point + (off - V::repeat(1.0)) * 1e-4)
+                });
+                assert!(!place.at_most.is_finite() || near, "{place:?}");
+            }
         }
     }
     println!("{clear} clear, {hits} hit, {unproven} not proven");

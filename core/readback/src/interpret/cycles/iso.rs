@@ -83,6 +83,9 @@ pub(super) fn hole(
     }
     // Its own axis is no place.
     words.present &= !bit(letter(axis));
+    if count == 0 && positioned {
+        stays_there(control, words)?;
+    }
     let incremental = control.modal.incremental;
     let made = (0..count).try_for_each(|turn| {
         let mut target =
@@ -104,6 +107,19 @@ pub(super) fn hole(
     });
     words.present |= own;
     made
+}
+
+/// A cycle of no holes (K0, L0) that names the place where the tool stands.
+fn stays_there(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<Diagnostic>> {
+    let target = control.target(words)?;
+    let here = control.point();
+    let goes = (0..3)
+        .any(|row| target.point[row].is_some_and(|to| libm::fabs(to - here[row]) > SAME_PLACE));
+    if goes || target.said != 0 {
+        let message = "a cycle of no holes (K0, L0) names a place: whether the tool goes there differs from control to control, and is not followed";
+        return Err(control.refuse("nc-cycle", message));
+    }
+    Ok(())
 }
 
 /// [`levels_said`] of controls with instructions (Fagor): Z is where the feed begins and I the bottom, B a peck, of
@@ -241,6 +257,9 @@ fn levels_said(
 
 /// Pecks that are shorter, mm, are hardly meant.
 const TINY_PECK: f64 = 0.05;
+
+/// A place no farther away is where the tool stands, mm.
+const SAME_PLACE: f64 = 1e-6;
 
 /// The pitch of a thread, mm, by a letter that the dialect names beside the cycle: J threads an inch, any other mm.
 fn thread_pitch(control: &ControlState, running: &IsoCycle, words: &mut BlockWords) -> Option<f64> {

@@ -247,3 +247,26 @@ fn arcs_of_axis_positions_lie_as_the_axes_do_on_the_part() {
         }
     }
 }
+
+/// K0 and L0 keep the data of a cycle and make no hole; where they lead the tool is not agreed upon.
+#[test]
+fn a_cycle_of_no_holes_makes_none() {
+    let mill = machine("vmc");
+    let run = |cycle: &str| {
+        letters(&mill, &format!("G90 G94\nG0 X5. Y0 Z30. F300\n{cycle}\nX20.\nG80\nG0 Z30.\n"))
+    };
+    for count in ["K0", "L0"] {
+        for place in ["", "X5. ", "X5. Y0. "] {
+            let done = run(&format!("G98 G81 {place}Z-8. R2. {count}")).whole();
+            let deep = done.motions.iter().filter(|motion| motion.to.pose.tip.z < -7.0);
+            let deep: Vec<f64> = deep.map(|motion| motion.to.pose.tip.x).collect();
+            assert!(
+                !deep.is_empty() && deep.iter().all(|x| (x - 20.0).abs() < SAME),
+                "{place}{count}"
+            );
+        }
+        let done = run(&format!("G98 G81 X9. Z-8. R2. {count}"));
+        let says = format!("{:?}", done.refused);
+        assert!(says.contains("names a place"), "{says}");
+    }
+}

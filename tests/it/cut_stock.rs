@@ -264,16 +264,17 @@ fn each_line_is_told_by_what_it_cuts() {
     assert!(clear, "{said}");
     let text = fs::read_to_string(folder.path().join("lines.csv")).unwrap();
     let mut lines = text.lines();
-    let head = "line,clear_by,cut_at_least,cut_at_most,depth_at_least,depth_at_most,width_at_least,width_at_most";
+    let head = "line,passes,clear_by,cut_at_least,cut_at_most,depth_at_least,depth_at_most,width_at_least,width_at_most";
     assert_eq!(lines.next(), Some(head));
     let (mut sums, mut deepest) = ([0.0; 2], [0.0f64; 2]);
     for line in lines {
         let row: Vec<f64> = line.split(',').map(|word| word.parse().unwrap_or(0.0)).collect();
-        assert!(row[2] <= row[3] && row[4] <= row[5] && row[6] <= row[7] && row[7] <= 10.0);
-        sums = [sums[0] + row[2], sums[1] + row[3]];
+        assert!(row[1] == 1.0);
+        assert!(row[3] <= row[4] && row[5] <= row[6] && row[7] <= row[8] && row[8] <= 10.0);
+        sums = [sums[0] + row[3], sums[1] + row[4]];
         // But for plunges, which have no width.
-        if row[7] > 0.0 {
-            deepest = [deepest[0].max(row[4]), deepest[1].max(row[5])];
+        if row[8] > 0.0 {
+            deepest = [deepest[0].max(row[5]), deepest[1].max(row[6])];
         }
     }
     // A pocket of 50 by 36 with corners of 5 mm.
@@ -357,12 +358,71 @@ fn each_line_is_told_by_how_near_it_comes_to_what_is_left() {
     let clear_by = |wanted: &str| -> f64 {
         let line = program.lines().position(|line| line == wanted).unwrap() + 1;
         let row = text.lines().find(|row| row.starts_with(&format!("{line},"))).unwrap();
-        row.split(',').nth(1).unwrap().parse().unwrap()
+        row.split(',').nth(2).unwrap().parse().unwrap()
     };
     assert_eq!(clear_by("G0 X34."), 0.0, "{text}");
     // The tip 5 mm above the block, before anything is cut.
     let above = clear_by("G0 X-20. Y-13.");
     assert!(above > 4.7 && above < 5.001, "{above}");
+}
+
+/// A slot in tenths of a millimetre and a circle: what each line may take is what the tool sweeps at most, not what the cells
+/// about it cannot tell.
+#[test]
+fn short_blocks_and_arcs_are_told_closely() {
+    let mine = machine("cut = true\nresolution = 0.4", "cutter = [[0, 5], [30, 5]]");
+    let begin = program("").split("G0 X-20.").next().unwrap().to_owned();
+    let rows = |lines: &str| -> Vec<Vec<f64>> {
+        let program = format!("{begin}{lines}\nG0 Z5.\nG53 G0 Z20.\nM30\n%\n");
+        let (folder, said, clear) = proven(&mine, &program, &["--csv", "lines.csv"]);
+        assert!(clear, "{said}");
+        let text = fs::read_to_string(folder.path().join("lines.csv")).unwrap();
+        let row = |line: &str| line.split(',').map(|word| word.parse().unwrap_or(0.0)).collect();
+        text.lines().skip(1).map(row).collect()
+    };
+    let blocks: Vec<String> =
+        (1..=200).map(|step| format!("X{:.1}", -10.0 + 0.1 * f64::from(step))).collect();
+    let slot = rows(&format!("G0 X-10. Y0.\nG1 Z-3. F300.\nG1 {} F800.", blocks.join("\n")));
+    let cuts = slot.iter().filter(|row| row[8] > 0.0);
+    let most: f64 = cuts.clone().map(|row| row[4]).sum();
+    assert_eq!(cuts.count(), 200);
+    let truth = 20.0 * 10.0 * 3.0;
+    assert!(most >= truth && most < 1.05 * truth, "{most} {truth}");
+    let circle = rows("G0 X15. Y0.\nG1 Z-3. F300.\nG3 X15. Y0. I-15. J0. F800.");
+    let arc = circle
+        .iter()
+        .filter(|row| row[8] > 0.0)
+        .max_by(|one, other| one[4].total_cmp(&other[4]))
+        .unwrap();
+    let truth = std::f64::consts::PI * (400.0 - 100.0) * 3.0 - std::f64::consts::PI * 75.0;
+    assert!(
+        arc[3] <= truth && truth <= arc[4] && arc[4] < 1.15 * truth,
+        "{arc:?} {truth}"
+    );
+    assert!(arc[5] > 2.9 && arc[5] <= 3.0 && arc[6] >= 3.0 && arc[6] < 3.05, "{arc:?}");
+    assert!(arc[7] <= 10.0 && arc[7] > 9.0 && arc[8] >= 10.0 && arc[8] < 10.1, "{arc:?}");
+}
+
+/// Lines of a subprogram have one row, with how often they are run: of all passes what they cut, and the deepest.
+#[test]
+fn a_line_that_is_run_again_has_one_row() {
+    let mine = machine("cut = true", "cutter = [[0, 5], [30, 5]]");
+    let begin = program("").split("G0 X-20.").next().unwrap().to_owned();
+    let program = format!(
+        "{begin}G0 X-50. Y0.\nZ-2.\nM98 P5\nG0 Z-4.\nM98 P5\nG0 Z-6.\nM98 P5\nG0 Z5.\nG53 G0 Z20.\nM30\nO5\nG1 X50. F800.\nG0 X-50.\nM99\n%\n"
+    );
+    let (folder, said, clear) = proven(&mine, &program, &["--csv", "lines.csv"]);
+    assert!(clear, "{said}");
+    let text = fs::read_to_string(folder.path().join("lines.csv")).unwrap();
+    let line = program.lines().position(|line| line == "G1 X50. F800.").unwrap() + 1;
+    let rows: Vec<&str> = text.lines().filter(|row| row.starts_with(&format!("{line},"))).collect();
+    let [row] = rows[..] else { panic!("{text}") };
+    let row: Vec<f64> = row.split(',').map(|word| word.parse().unwrap()).collect();
+    let truth = 80.0 * 10.0 * 6.0;
+    assert!(row[1] == 3.0 && row[3] <= truth && truth <= row[4], "{row:?}");
+    let lines: Vec<u64> =
+        text.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
+    assert!(lines.windows(2).all(|pair| pair[0] < pair[1]), "{text}");
 }
 
 /// A cutter that stands cuts nothing, whether what it cuts would be taken from the stock or not.

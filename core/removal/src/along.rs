@@ -8,12 +8,12 @@ use post_clearance::pair::View;
 use post_clearance::piece::{Piece, Way};
 use post_clearance::placement::Placement;
 use post_machine::kinematics::{Joint, Joints};
-use post_motion::path::turns;
+use post_motion::path::{Curve, turns};
 
 use crate::been::{goes_alone, lean};
 use crate::chip::Chip;
 use crate::field::{Around, Cutter, Field, Strays};
-use crate::profile::ToolPose;
+use crate::profile::{ToolPose, swept_ahead};
 
 /// Pieces of a way that a body is looked at on; what is not proven then is not.
 const MOST_PIECES: u64 = 1 << 11;
@@ -44,6 +44,8 @@ pub struct Seat {
 pub struct Mounted {
     /// The frame of the field on its link.
     field: Placement,
+    /// The field hangs on the part: poses of the part frame go as they do in its own.
+    on_part: bool,
     view: View,
     /// Where it begins, mm, and along which unit vector it goes on, machine frame, all axes at zero.
     at_zero: ToolPose,
@@ -58,7 +60,7 @@ impl Mounted {
     ) -> Self {
         let view = View::new(axes, field.link, link, centre, radius);
         let at_zero = ToolPose { tip: centre, axis: Vector3::z() };
-        Self { field: field.frame, view, at_zero }
+        Self { field: field.frame, on_part: field.link == 0, view, at_zero }
     }
 
     /// A body of revolution on the last link that begins at `at_zero`, all of it within `radius` of `centre`, mm, machine
@@ -95,6 +97,26 @@ impl Mounted {
         (!strays).then(|| ends.each_ref().map(|joints| self.pose(joints)))
     }
 
+    /// How far it goes aside and along its axis on a way on which it does not turn, mm, no less than all of it.
+    fn goes(&self, way: &Way<'_>) -> Option<[f64; 2]> {
+        if let Some([from, to]) = self.straight(way) {
+            let gone = to.tip - from.tip;
+            let along = libm::fabs(gone.dot(&from.axis));
+            let stray = if way.independent { lean(gone.norm()) } else { 0.0 };
+            return Some([(gone - from.axis * gone.dot(&from.axis)).norm() + stray, along + stray]);
+        }
+        if way.independent || !self.on_part || turns(way.solver.chain(), way.ends) {
+            return None;
+        }
+        let tips = way.ends.map(|stance| stance.pose.tip);
+        let (curve, axis) = (way.interpolation.curve(), way.ends[0].pose.axis);
+        // Of a spline it is known to a thousandth.
+        let length = 1.002 * curve.length(tips);
+        let level = matches!(curve, Curve::Arc { normal, .. } if normal.cross(&axis).norm() < 1e-9);
+        let rise = libm::fabs((tips[1] - tips[0]).dot(&axis));
+        Some([length, if level { rise } else { length }])
+    }
+
     /// No point of it is farther from where it is at the `middle` of a piece, mm, anywhere on the piece.
     fn reach(&self, middle: &Joints, piece: &Piece) -> f64 {
         let by_levers = || self.view.reach_by_levers(middle, &self.view.levers(middle), piece);
@@ -106,8 +128,18 @@ impl Mounted {
 }
 
 /// What a cutter removes of a field along a way, at feed: how much, and how far it goes into it. Where it is not known how
-/// the axes go nothing is removed for certain but at the ends, and nothing is left for certain.
-pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) -> Chip {
+/// the axes go nothing is removed for certain but at the ends, and nothing is left for certain. `free`: there is nothing left
+/// in the cutter where the way begins, as where it has come cutting.
+pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>, free: bool) -> Chip {
+    let mut taken = cut_along(field, tool, cutter, way);
+    if let Some(goes) = tool.goes(way).filter(|_| free) {
+        let depth = taken.engagement.map_or(f64::INFINITY, |engagement| engagement.depth.at_most);
+        taken.no_more_than(swept_ahead(&cutter.outer, depth, goes));
+    }
+    taken
+}
+
+fn cut_along(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) -> Chip {
     if let Some(poses) = tool.straight(way) {
         let stray = if way.independent { lean((poses[1].tip - poses[0].tip).norm()) } else { 0.0 };
         return field.cut_straight(cutter, poses, stray);
@@ -116,7 +148,7 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
     let mut taken = Chip::default();
     let ends = way.ends.map(|stance| pose(&stance.joints));
     for end in &ends {
-        taken += field.cut_standing(cutter, ends, end, None);
+        taken.volume += field.remove(cutter, end);
     }
     let step = field.cell().max();
     let most = if way.independent { MOST_STEPS_APART } else { MOST_STEPS };
@@ -141,7 +173,15 @@ pub fn cut(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) ->
         }
         let (ends, middle) = (piece.ends.each_ref().map(pose), pose(&at));
         let around = Around { pose: middle, by: reach, up: 0.0 };
-        let strays = fine.then_some(Strays { around, before });
+        let turning = piece.independent || tool.view.turns(&piece);
+        // Without a turn what strays from the line between its ends is told.
+        let heights = match turning {
+            true => [middle.axis.dot(&middle.tip); 2],
+            false => ends.map(|end| middle.axis.dot(&end.tip)),
+        };
+        let aside = if turning { reach } else { piece.stray };
+        let tips = [heights[0].min(heights[1]) - aside, heights[0].max(heights[1]) + aside];
+        let strays = fine.then_some(Strays { around, before, tips, aside });
         taken += field.cut_standing(cutter, ends, &middle, strays);
         (lost, before) = (lost || !fine, Some(around).filter(|_| fine));
     }

@@ -41,6 +41,15 @@ impl Extent {
     }
 }
 
+impl Chip {
+    /// It is no more than this, mm³.
+    pub(crate) fn no_more_than(&mut self, volume: f64) {
+        let Volume { at_least, at_most } = &mut self.volume;
+        *at_most = at_most.min(volume);
+        *at_least = at_least.min(*at_most);
+    }
+}
+
 impl std::ops::AddAssign for Chip {
     /// With what another cut takes: volumes add up, of lengths the longest counts.
     fn add_assign(&mut self, other: Self) {
@@ -81,8 +90,8 @@ pub(crate) struct Gauge {
     tips: [f64; 2],
     /// Across the way and the tool axis.
     across: Option<Vector3<f64>>,
-    /// No point of the tool is farther from where it stands, mm.
-    by: f64,
+    /// The tool strays aside from its way by no more than this, mm.
+    aside: f64,
     /// What certainly is taken, and what may be.
     certain: Swath,
     possible: Swath,
@@ -96,13 +105,18 @@ impl Gauge {
         let [one, other] = [from, to].map(|pose| from.axis.dot(&pose.tip));
         let tips = [one.min(other), one.max(other)];
         let (certain, possible) = (Swath::NOTHING, Swath::NOTHING);
-        Self { axis: from.axis, tips, across, by: 0.0, certain, possible }
+        Self { axis: from.axis, tips, across, aside: 0.0, certain, possible }
     }
 
-    /// The tool stands at a pose, no point of it farther from there than `by`, mm.
-    pub fn stand(&mut self, pose: &ToolPose, by: f64) {
+    /// The tool stands at a pose.
+    pub fn stand(&mut self, pose: &ToolPose) {
         let tip = pose.axis.dot(&pose.tip);
-        (self.axis, self.tips, self.by) = (pose.axis, [tip - by, tip + by], by);
+        (self.axis, self.tips, self.aside) = (pose.axis, [tip; 2], 0.0);
+    }
+
+    /// It goes about there: its tip between two heights along its axis, and aside from its way by no more than this, mm.
+    pub fn stray(&mut self, tips: [f64; 2], aside: f64) {
+        (self.tips, self.aside) = (tips, aside);
     }
 
     /// Stretches of a prism along Z that are taken for certain.
@@ -150,7 +164,7 @@ impl Gauge {
         let Self { certain, possible, .. } = self;
         let most = |end: fn(&Frustum) -> f64| tool.iter().map(end).fold(0.0, f64::max);
         let long = most(|frustum| frustum.z[1]) + self.tips[1] - self.tips[0];
-        let wide = 2.0 * (most(|frustum| frustum.r[0].max(frustum.r[1])) + self.by);
+        let wide = 2.0 * (most(|frustum| frustum.r[0].max(frustum.r[1])) + self.aside);
         let extent = |at_least: f64, at_most: f64| {
             let at_most = at_most.max(0.0);
             Extent { at_least: at_least.max(0.0).min(at_most), at_most }

@@ -198,10 +198,10 @@ impl Field {
         strays: Option<Strays>,
     ) -> Chip {
         let mut gauge = Gauge::new(ends);
-        gauge.stand(pose, 0.0);
+        gauge.stand(pose);
         let mut volume = self.remove_at(cutter, pose, Some(&mut gauge));
-        if let Some(Strays { around, before }) = strays {
-            gauge.stand(pose, around.by);
+        if let Some(Strays { around, before, tips, aside }) = strays {
+            gauge.stray(tips, aside);
             volume += self.doubt_around(cutter, &around, before.as_ref(), Some(&mut gauge));
         }
         Chip { volume, engagement: gauge.engagement(&cutter.outer) }
@@ -369,6 +369,10 @@ pub(crate) struct Strays {
     pub around: Around,
     /// Around the place before, where what was left is counted already.
     pub before: Option<Around>,
+    /// How high the tip is along the tool axis at least and at most, mm.
+    pub tips: [f64; 2],
+    /// How far it goes aside, mm.
+    pub aside: f64,
 }
 
 impl Around {

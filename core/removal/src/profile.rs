@@ -269,6 +269,18 @@ pub(crate) fn along_axis([from, to]: [ToolPose; 2]) -> Option<(ToolPose, f64)> {
     ((way - from.axis * climb).norm() <= 1e-3 * MARGIN).then_some((low, libm::fabs(climb)))
 }
 
+/// How much frusta sweep at most that go aside and along their axis, mm, where nothing is higher above the tip than `depth`:
+/// what is not where they began, mm³.
+pub(crate) fn swept_ahead(frusta: &[Frustum], depth: f64, [aside, along]: [f64; 2]) -> f64 {
+    let front = frusta.iter().map(|frustum| {
+        let [low, high] = [frustum.z[0], frustum.z[1].min(depth)];
+        let radius = |z| frustum.r[0] + frustum.slope() * (z - frustum.z[0]);
+        if low < high { (high - low) * (radius(low) + radius(high)) } else { 0.0 }
+    });
+    let wide = frusta.iter().flat_map(|frustum| frustum.r).fold(0.0, f64::max);
+    aside * front.sum::<f64>() + along * std::f64::consts::PI * wide * wide
+}
+
 /// From where a line comes into the first of some frusta to where it leaves the last.
 pub(crate) fn hull(frusta: &[Frustum], line: &Line) -> Option<[f64; 2]> {
     let inside = frusta.iter().filter_map(|frustum| frustum.inside(line));

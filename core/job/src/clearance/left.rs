@@ -199,6 +199,8 @@ struct CuttingTool {
     /// How far its edges go up from the tip, mm.
     edge: f64,
     parts: Vec<Part>,
+    /// Nothing is left where it stands: it came there cutting, or clear of all.
+    free: bool,
 }
 
 /// A body that is held against what is left.
@@ -410,7 +412,7 @@ impl CutStock {
             (cutter, mounted)
         });
         self.been = Been::new(&profile.points);
-        CuttingTool { number, cutter, edge, parts }
+        CuttingTool { number, cutter, edge, parts, free: false }
     }
 
     /// Puts down what the tool in the spindle has cut.
@@ -436,6 +438,7 @@ impl CutStock {
     pub fn forget(&mut self) {
         self.field.doubt_all();
         self.been.clear();
+        self.tool.iter_mut().for_each(|tool| tool.free = false);
     }
 
     /// Takes a motion: what does not cut is held against what is left, and what cuts takes its part of it.
@@ -523,7 +526,9 @@ impl CutStock {
         }
         let cutter = tool.cutter.as_ref();
         match cutter.filter(|_| cuts) {
-            Some((cutter, mounted)) => taken += along::cut(&mut self.field, mounted, cutter, way),
+            Some((cutter, mounted)) => {
+                taken += along::cut(&mut self.field, mounted, cutter, way, tool.free);
+            }
             None if cuts => self.field.doubt_all(),
             None => {}
         }
@@ -534,6 +539,7 @@ impl CutStock {
             self.chips += taken.volume;
             *chip.get_or_insert_default() += taken;
         }
+        tool.free = cuts || clear;
         // However much of it is known, the tool was there, and what was in its way is gone.
         if let Some((_, mounted)) = &tool.cutter
             && (cuts || clear && !been)
@@ -561,7 +567,7 @@ impl CutStock {
         let clear = self.stays_clear(&mut part.held, against, way);
         if !clear {
             // What it hits may give way.
-            let chip = along::cut(&mut self.field, &part.mounted, &part.body, way);
+            let chip = along::cut(&mut self.field, &part.mounted, &part.body, way, false);
             if part.kind == PartKind::Shank {
                 *taken += chip;
             }

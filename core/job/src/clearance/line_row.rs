@@ -1,6 +1,7 @@
 //! What was found of each line of the program that moves.
 
 use post_removal::chip::{Chip, Engagement, Extent};
+use post_removal::field::Volume;
 
 use super::Heard;
 use crate::columns::Column;
@@ -12,6 +13,8 @@ const DECIMALS: u8 = 3;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LineRow {
     line: u64,
+    /// How often it is run.
+    passes: u64,
     /// No two bodies are nearer, mm.
     clear_by: Option<f64>,
     chip: Chip,
@@ -20,7 +23,7 @@ pub struct LineRow {
 impl LineRow {
     /// A line of which nothing is heard yet.
     fn new(line: u64) -> Self {
-        Self { line, ..Self::default() }
+        Self { line, passes: 1, ..Self::default() }
     }
 
     /// Takes what is heard of a motion: of several of a line the nearest counts, and all that they cut. A line that is over
@@ -33,6 +36,47 @@ impl LineRow {
             self.chip += chip;
         }
         over.filter(Self::is_told)
+    }
+
+    /// Its line.
+    pub(super) fn line(&self) -> u64 {
+        self.line
+    }
+
+    /// With another pass of the line: of both the nearest counts, all that they cut, and the longest.
+    pub(super) fn and(mut self, other: &Self) -> Self {
+        self.passes += other.passes;
+        self.clear_by = self.clear_by.into_iter().chain(other.clear_by).reduce(f64::min);
+        self.chip += other.chip;
+        self
+    }
+
+    /// Numbers of a row.
+    pub(super) const NUMBERS: usize = 8;
+
+    /// Its numbers, to be read back by [`LineRow::of`]: no number where nothing is known.
+    pub(super) fn numbers(&self) -> [f64; Self::NUMBERS] {
+        let Chip { volume, engagement } = self.chip;
+        let ends = |extent: Option<Extent>| {
+            extent.map_or([f64::NAN; 2], |extent| [extent.at_least, extent.at_most])
+        };
+        let [deep, deepest] = ends(engagement.map(|engagement| engagement.depth));
+        let [wide, widest] = ends(engagement.and_then(|engagement| engagement.width));
+        let clear_by = self.clear_by.unwrap_or(f64::NAN);
+        let passes = self.passes as f64;
+        [passes, clear_by, volume.at_least, volume.at_most, deep, deepest, wide, widest]
+    }
+
+    /// The row of these numbers; none of zeros, where nothing was written.
+    pub(super) fn of(line: u64, numbers: [f64; Self::NUMBERS]) -> Option<Self> {
+        let [passes, clear_by, at_least, at_most, deep, deepest, wide, widest] = numbers;
+        let known = |value: f64| (!value.is_nan()).then_some(value);
+        let extent = |least, most| Some(Extent { at_least: known(least)?, at_most: known(most)? });
+        let width = extent(wide, widest);
+        let engagement = extent(deep, deepest).map(|depth| Engagement { depth, width });
+        let chip = Chip { volume: Volume { at_least, at_most }, engagement };
+        let row = Self { line, passes: passes as u64, clear_by: known(clear_by), chip };
+        (passes > 0.0).then_some(row)
     }
 
     /// Something was heard of it.
@@ -78,6 +122,7 @@ impl LineRow {
         let most = |extent: Option<Extent>| extent.map(|extent| extent.at_most);
         vec![
             C::new("line", "", 0, |row| row.line),
+            C::new("passes", "", 0, |row| row.passes),
             C::new("clear_by", "mm", DECIMALS, |row| row.clear_by.map(rounded)),
             C::new("cut_at_least", "mm³", DECIMALS, |row| row.chip.volume.at_least),
             C::new("cut_at_most", "mm³", DECIMALS, |row| row.chip.volume.at_most),

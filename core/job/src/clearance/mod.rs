@@ -4,6 +4,7 @@ mod bodies;
 mod choice;
 mod left;
 mod line_row;
+mod line_table;
 mod names;
 mod of_job;
 mod outlines;
@@ -32,6 +33,7 @@ use crate::session::Session;
 pub(crate) use bodies::{placed, solid_name};
 
 use bodies::link_name;
+use line_table::LineTable;
 use watch::ClearanceWatch;
 
 pub(crate) use choice::ChoiceBodies;
@@ -104,18 +106,24 @@ pub fn clearance(
     let Some(target) = &request.csv else { return prove(control, name, text, &facts, None) };
     let mut files = AtomicFile::create(session, &[(LINES, target)])?;
     let [file] = files.as_mut_slice() else { return prove(control, name, text, &facts, None) };
-    let mut table = CsvTable::new(LineRow::columns(), file);
-    let (mut last, mut written) = (LineRow::default(), Ok(()));
+    let (mut last, mut lines) = (LineRow::default(), LineTable::new()?);
     let mut hear = |heard: &Heard| {
-        if let (Some(row), true) = (last.hear(heard), written.is_ok()) {
-            written = table.row(&row);
+        if let Some(row) = last.hear(heard) {
+            lines.take(&row);
         }
     };
     let found = prove(control, name, text, &facts, Some(&mut hear))?;
-    written?;
     if last.is_told() {
-        table.row(&last)?;
+        lines.take(&last);
     }
+    let mut table = CsvTable::new(LineRow::columns(), file);
+    let mut written = Ok(());
+    lines.hand_on(&mut |row| {
+        if written.is_ok() {
+            written = table.row(row);
+        }
+    })?;
+    written?;
     table.finish()?;
     AtomicFile::finish(session, files)?;
     Ok(found)

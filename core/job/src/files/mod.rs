@@ -51,7 +51,7 @@ pub use read_files::ReadFiles;
 pub use scale::step as round_step;
 pub use scratch::Scratch;
 pub use target::Role;
-pub use temporary::{delete_on_signals, delete_temporary_files};
+pub use temporary::{Temporary, delete_on_signals, delete_temporary_files};
 pub use watched::{ReadPosition, Watched};
 
 /// Writes texts whole: all of them, or none. Standard output is taken if one of them went there.

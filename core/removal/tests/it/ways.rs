@@ -128,7 +128,7 @@ fn what_no_pose_of_a_way_touches_is_never_removed() {
             ends: [&ends[0], &ends[1]],
             independent: false,
         };
-        let chip = cut(&mut field, &case.mounted(&profile), &Cutter::new(&profile), &way);
+        let chip = cut(&mut field, &case.mounted(&profile), &Cutter::new(&profile), &way, false);
         let (engagement, chip) = (chip.engagement, chip.volume);
         let after = field.volume();
         assert!(chip.at_least <= before.at_least - after.at_least + 1e-2);

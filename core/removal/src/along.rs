@@ -146,6 +146,7 @@ fn cut_along(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) 
     }
     let pose = |joints: &Joints| tool.pose(joints);
     let mut taken = Chip::default();
+    field.in_pieces(true);
     let ends = way.ends.map(|stance| pose(&stance.joints));
     for end in &ends {
         taken.volume += field.remove(cutter, end);
@@ -185,6 +186,7 @@ fn cut_along(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) 
         taken += field.cut_standing(cutter, ends, &middle, strays);
         (lost, before) = (lost || !fine, Some(around).filter(|_| fine));
     }
+    field.in_pieces(false);
     if lost {
         taken.volume.at_most = taken.volume.at_most.max(field.volume().at_most);
         taken.engagement = None;

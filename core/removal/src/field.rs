@@ -1,5 +1,7 @@
 //! What is left of a stock, between two bounds.
 
+use std::collections::HashMap;
+
 use nalgebra::Vector3;
 
 use crate::chip::{Chip, Gauge};
@@ -29,6 +31,9 @@ pub struct Field {
     /// From the lowest to the highest of what may be left in each tile of Z prisms: none where it is to be looked up.
     pub(crate) tiles: Vec<Option<Stretch>>,
     pub(crate) guess: Option<[Vector3<f64>; 2]>,
+    /// Of prisms along Z that a cut in pieces came by, what certainly was left before it: what a piece may have taken and a
+    /// later one certainly takes, the cut certainly does.
+    kept: Option<HashMap<[usize; 2], Vec<Span>>>,
 }
 
 /// Volume, between two bounds, mm³.
@@ -94,6 +99,7 @@ impl Field {
             lower: Rays::new(2, &grid, Bound::Lower),
             tiles: vec![None; tiles],
             guess: None,
+            kept: None,
             grid,
         }
     }
@@ -126,7 +132,7 @@ impl Field {
             let mut kept = Vec::new();
             let along = rays.axis();
             let line = |point| hull(&solid, &Line::new(&pose, point, along));
-            rays.touch(&extents(&solid, &pose), None, &line, &mut |place, stretch| {
+            rays.touch(&extents(&solid, &pose), None, &line, &mut |place, _, stretch| {
                 kept.push((place, stretch));
             });
             rays.fill(&kept, size[along]);
@@ -186,6 +192,11 @@ impl Field {
             before = Some(around);
         }
         Chip { volume, engagement: gauge.engagement(&cutter.outer) }
+    }
+
+    /// A cut in pieces begins, or ends.
+    pub(crate) fn in_pieces(&mut self, begins: bool) {
+        self.kept = begins.then(HashMap::new);
     }
 
     /// A cutter stands on its way between two poses: what it certainly removes there is taken away. Where it is said how
@@ -256,7 +267,7 @@ impl Field {
         line: &dyn Fn(Vector3<f64>, usize) -> Option<Stretch>,
         mut gauge: Option<&mut Gauge>,
     ) -> Volume {
-        let Self { upper, lower, tiles, grid, .. } = self;
+        let Self { upper, lower, tiles, grid, kept, .. } = self;
         let width = grid.counts[0].div_ceil(TILE);
         let (mut length, mut at_most) = (0.0, 0.0);
         for (axis, rays) in upper.iter_mut().enumerate() {
@@ -264,7 +275,9 @@ impl Field {
                 if axis == 2 {
                     tiles[place[1] / TILE * width + place[0] / TILE] = None;
                     // What another part of the same cut has removed was counted there.
-                    length += common(left, lower.at(place), stretch);
+                    let before = kept.as_ref().and_then(|kept| kept.get(&place));
+                    let certain = before.map_or(lower.at(place), Vec::as_slice);
+                    length += common(left, certain, stretch);
                     if let Some(gauge) = &mut gauge {
                         gauge.possible(grid, place, within(left, stretch));
                         gauge.certain(grid, place, within(lower.at(place), stretch));
@@ -290,14 +303,17 @@ impl Field {
         before: Option<&Around>,
         mut gauge: Option<&mut Gauge>,
     ) -> Volume {
-        let Self { upper, lower, grid, .. } = self;
+        let Self { upper, lower, grid, kept, .. } = self;
         let half = lower.half_diagonal();
         let body = around.body(cutter, half);
         let counted = before.map(|before| (before.body(cutter, half), before.pose));
         let mut length = 0.0;
         let line = |point| hull(&body, &Line::new(&around.pose, point, 2));
         let extents = extents(&body, &around.pose);
-        lower.touch(&extents, Some(&upper[2]), &line, &mut |place, stretch| {
+        lower.touch(&extents, Some(&upper[2]), &line, &mut |place, certain, stretch| {
+            if let Some(kept) = kept.as_mut() {
+                kept.entry(place).or_insert_with(|| certain.to_vec());
+            }
             let left = upper[2].left(place, stretch);
             if left <= 0.0 {
                 return;

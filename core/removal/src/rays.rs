@@ -313,7 +313,7 @@ impl Rays {
         extents: &[Vector3<f64>; 2],
         other: Option<&Self>,
         line: &dyn Fn(Vector3<f64>) -> Corner,
-        taken: &mut dyn FnMut([usize; 2], Stretch),
+        taken: Taken<'_>,
     ) {
         let Some([columns, rows]) = self.places(extents, 1.0) else { return };
         let along = [extents[0][self.axis], extents[1][self.axis]];
@@ -325,7 +325,7 @@ impl Rays {
                     continue;
                 }
                 if let Some(stretch) = line(self.middle(place)) {
-                    taken(place, stretch);
+                    taken(place, self.at(place), stretch);
                     self.take(place, stretch);
                 }
             }

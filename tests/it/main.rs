@@ -64,6 +64,7 @@ mod predict_measured;
 mod predict_numbers;
 mod predict_told;
 mod program_text;
+mod random_links;
 mod rapids;
 mod readiness;
 mod real_files;

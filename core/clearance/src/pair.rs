@@ -10,7 +10,7 @@ use crate::placement::Placement;
 /// One body seen from the link of another: the axes between them, with the middle of the body as what these carry.
 #[derive(Clone, Debug)]
 pub struct View {
-    chain: Chain,
+    pub(crate) chain: Chain,
     /// Place in the machine's chain of each of its axes.
     axes: Vec<usize>,
     /// All of the body is within this of its middle, mm.
@@ -40,7 +40,7 @@ impl View {
     }
 
     /// Values of its own axes.
-    fn of(&self, joints: &Joints) -> Joints {
+    pub(crate) fn of(&self, joints: &Joints) -> Joints {
         let mut own = Joints::default();
         for (value, place) in own.iter_mut().zip(&self.axes) {
             *value = joints[*place];
@@ -138,7 +138,12 @@ impl View {
     /// of it.
     pub(crate) fn bend(&self, piece: &Piece) -> f64 {
         let [from, to] = piece.ends.each_ref().map(|joints| self.of(joints));
-        self.chain.bend_by_arms_within(self.radius, [&from, &to])
+        self.bend_between(&from, &to)
+    }
+
+    /// The same between two sets of values of its own axes.
+    pub(crate) fn bend_between(&self, from: &Joints, to: &Joints) -> f64 {
+        self.chain.bend_by_arms_within(self.radius, [from, to])
     }
 
     /// How far each linear axis takes the body on `piece`, mm, frame of the other's link, rotary axes as they stand where it

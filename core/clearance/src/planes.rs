@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use post_machine::kinematics::Joints;
 
 use crate::ALLOWANCE;
+use crate::around::Face;
 use crate::convex::Support;
 use crate::pair::View;
 use crate::piece::Piece;
@@ -25,6 +26,11 @@ pub(crate) struct Planes {
 impl Planes {
     pub(crate) fn new(along: Vector3<f64>, stands: &Shape) -> Self {
         Self { along, far: along.dot(&stands.support(along)), last: None, nearest: None }
+    }
+
+    /// The side of the body that stands.
+    pub(crate) fn face(&self) -> Face {
+        Face { along: self.along, far: self.far }
     }
 
     /// Unit vector towards the body that moves, frame of the other.

@@ -24,7 +24,11 @@ use body::may_touch;
 pub use body::{Body, BodyKind, Rules};
 
 /// Pieces of one motion that a pair is looked at on; what is not proven then is not.
-const MOST_PIECES: u64 = 1 << 13;
+pub const MOST_PIECES: u64 = 1 << 13;
+
+/// Pieces after which the nearest approach is not looked for any more, but only whether what is to be kept is: of axes that go
+/// for themselves, and of others.
+const MOST_CLOSE: [u64; 2] = [1 << 6, 1 << 12];
 
 /// The nearest approach is known to this share of it: where the rest cannot be nearer, no distance is computed.
 const CLOSE: f64 = 0.95;
@@ -52,6 +56,8 @@ pub enum Verdict {
     Near,
     /// Neither is proven.
     Unproven,
+    /// Neither is, and nowhere that was looked at are they too near: after [`MOST_PIECES`] nothing more was looked at.
+    Unfinished,
 }
 
 /// Where two bodies are not proven to be clear.
@@ -245,7 +251,7 @@ impl Proof {
             let (within, spans) = (rules.within, &lately.spans);
             let most = keeps[0].max(keeps[1]);
             let yields = motion.beyond.is_none() && may_touch(kinds) && keep > ALLOWANCE;
-            let trial = Trial { bodies, motion, keep, yields, most, within, spans };
+            let trial = Trial { bodies, motion, keep, yields, most, within, closely: true, spans };
             *distances += pair.take(&trial, whole.as_ref());
         }
         if let Some(whole) = whole.as_ref().filter(|_| !sleeps) {
@@ -294,6 +300,8 @@ struct Trial<'a> {
     /// What is to be kept at most, at feed or at rapid, mm.
     most: f64,
     within: f64,
+    /// The nearest approach is looked for, not only whether what is to be kept is.
+    closely: bool,
     /// How far each axis has gone lately, mm and radians.
     spans: &'a Joints,
 }
@@ -406,23 +414,24 @@ impl Pair {
                 trial.keep = ALLOWANCE;
             }
         }
-        let trial = &trial;
+        let close = computed + MOST_CLOSE[usize::from(!whole.independent)];
         let mut clear_by = f64::INFINITY;
         let mut waiting = vec![whole.clone()];
         while let Some(piece) = waiting.pop() {
-            if let Some(left) = self.left(trial, &piece) {
+            trial.closely &= computed < close;
+            if let Some(left) = self.left(&trial, &piece) {
                 clear_by = clear_by.min(left);
                 continue;
             }
             computed += 1;
-            match self.look(trial, &piece, computed > MOST_PIECES, &mut waiting) {
+            match self.look(&trial, &piece, computed > MOST_PIECES, &mut waiting) {
                 Looked::Clear(left) => clear_by = clear_by.min(left),
                 Looked::Halved => {}
                 Looked::Refused => return computed,
             }
         }
         self.result.clear_by = self.result.clear_by.min(clear_by);
-        self.make_room(trial, whole);
+        self.make_room(&trial, whole);
         computed
     }
 
@@ -498,7 +507,10 @@ impl Pair {
             return Looked::Clear(left);
         }
         if reach > trial.within && !last {
-            let widest = self.views[0].widest(piece).map_or(0, |(axis, _)| axis);
+            let widest = match piece.independent {
+                true => self.dearest(&joints, piece),
+                false => 0,
+            };
             if let Some([first, last]) = piece.halves(&trial.motion.way, &joints, widest) {
                 waiting.extend([last, first]);
                 return Looked::Halved;
@@ -512,13 +524,35 @@ impl Pair {
             true => apart,
             false => self.distance(trial.bodies, &joints, false, Enough::OF_PIECES),
         };
-        self.refuse(trial, Verdict::Unproven, &joints, Some(&apart));
+        let unfinished = last && reach > trial.within;
+        let verdict = if unfinished { Verdict::Unfinished } else { Verdict::Unproven };
+        self.refuse(trial, verdict, &joints, Some(&apart));
         Looked::Refused
+    }
+
+    /// The axis that a box of axis values is best halved along, by the planes that hold the bodies apart in the middle of it.
+    fn dearest(&self, middle: &Joints, piece: &Piece) -> usize {
+        let along = self.planes.as_ref().map(Planes::along);
+        self.views[self.nearer].around(middle, piece).dearest(along)
+    }
+
+    /// They are apart by so much along the direction of the planes in all of a box about `middle`, mm; none if that is less than
+    /// `least`.
+    fn apart_around(
+        &self,
+        trial: &Trial<'_>,
+        middle: &Joints,
+        piece: &Piece,
+        least: f64,
+    ) -> Option<f64> {
+        let face = self.planes.as_ref()?.face();
+        let moves = &trial.bodies[self.result.bodies[1 - self.nearer]].shape;
+        self.views[self.nearer].around(middle, piece).gap(&face, moves, least)
     }
 
     /// What a piece is to leave of the distance, mm: what is to be kept, and no less than the nearest approach by much.
     fn least(&self, trial: &Trial<'_>) -> f64 {
-        trial.keep.max(self.closely(trial))
+        if trial.closely { trial.keep.max(self.closely(trial)) } else { trial.keep }
     }
 
     /// The least that need not be looked at for the nearest approach, mm.
@@ -544,9 +578,17 @@ impl Pair {
             self.known = Some(self.knows(&piece.ends[1], end));
             return Some(left);
         }
-        let known = self.known.as_ref()?;
-        let left = known.at_least - self.reach(known, piece, known.at_least - least);
-        (left >= least).then_some(left)
+        if let Some(known) = &self.known {
+            let left = known.at_least - self.reach(known, piece, known.at_least - least);
+            if left >= least {
+                return Some(left);
+            }
+        }
+        if !piece.independent {
+            return None;
+        }
+        let middle = trial.motion.way.middle(piece)?;
+        self.apart_around(trial, &middle, piece, least)
     }
 
     /// They come nearer to one another by no more than this on a piece, mm, from where they stand at `known`: the least of
@@ -554,11 +596,14 @@ impl Pair {
     fn reach(&self, known: &Known, piece: &Piece, enough: f64) -> f64 {
         let mut least =
             self.views[self.nearer].reach_by_levers(&known.joints, &known.levers, piece);
-        for view in [self.nearer, 1 - self.nearer] {
-            if least <= enough || piece.independent {
+        for view in [self.nearer, 1 - self.nearer].map(|view| &self.views[view]) {
+            if least <= enough {
                 break;
             }
-            least = least.min(self.views[view].reach(&known.joints, piece));
+            least = least.min(match piece.independent {
+                true => view.around(&known.joints, piece).reach(),
+                false => view.reach(&known.joints, piece),
+            });
         }
         least
     }
@@ -575,6 +620,7 @@ impl Pair {
         let known = self.result.fault.as_ref().map(|fault| fault.verdict);
         let worse = match known {
             None => true,
+            Some(Verdict::Unfinished) => verdict != Verdict::Unfinished,
             Some(known) => verdict == Verdict::Hits && known != Verdict::Hits,
         };
         if worse {

@@ -26,7 +26,8 @@ impl Proof {
         self.pairs.sort_by(|one, other| one.result.nearest.0.total_cmp(&other.result.nearest.0));
         let Self { bodies, pairs, rules, distances, lately, .. } = self;
         let (keep, within, spans) = (ALLOWANCE, rules.within, &lately.spans);
-        let trial = Trial { bodies, motion, keep, yields: false, most: keep, within, spans };
+        let (yields, closely) = (false, true);
+        let trial = Trial { bodies, motion, keep, yields, most: keep, within, closely, spans };
         let (mut nearest, mut clear_by) = (f64::INFINITY, f64::INFINITY);
         for pair in pairs {
             let [one, other] = pair.result.bodies.map(|place| &bodies[place]);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use post_clearance::piece::Way;
-use post_clearance::proof::{Body, BodyKind, Fault, Move, Proof, Verdict};
+use post_clearance::proof::{Body, BodyKind, Fault, MOST_PIECES, Move, Proof, Verdict};
 use post_machine::check::number as decimals;
 use post_machine::description::{Machine, RapidAxes};
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
@@ -467,11 +467,14 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             if let Some(fault) = &row.fault {
                 let message = told(&self.control.machine, row, fault);
                 let by_cells = found.left.iter().any(|left| left.name == row.names[0]);
-                let help = match by_cells && fault.verdict == Verdict::Unproven {
-                    true => {
+                let help = match fault.verdict {
+                    Verdict::Unfinished => {
+                        "rapid_axes = \"together\" under [clearance], if the control interpolates rapids; else a rapid in shorter pieces, or with the tool retracted before axes turn"
+                    }
+                    Verdict::Unproven if by_cells => {
                         "another path or tool; a finer `resolution` of the stock tells what is near to a wall from it"
                     }
-                    false => {
+                    _ => {
                         "another fixture, tool or path; what is only drawn too large is drawn again, a pair that may touch is left out by [clearance] ignore"
                     }
                 };
@@ -533,6 +536,11 @@ fn told(machine: &Machine, row: &PairRow, fault: &Fault) -> String {
             Short(fault.at_most),
             Short(fault.keep)
         ),
+        Verdict::Unfinished => {
+            format!(
+                "that {one} stays clear of {other} is not proven: the work ran out after {MOST_PIECES} pieces of the way; where it was looked at it is clear"
+            )
+        }
         Verdict::Unproven if fault.at_most.is_finite() => {
             format!(
                 "that {one} stays clear of {other} is not proven: where it was looked at last they are no more than {} mm apart",
@@ -543,8 +551,10 @@ fn told(machine: &Machine, row: &PairRow, fault: &Fault) -> String {
             "that {one} stays clear of {other} is not proven: how the axes go on the way is not known"
         ),
     };
-    message.push_str(&format!(" at {}", machine.shown(&fault.joints)));
-    if fault.at_most.is_finite() {
+    if fault.verdict != Verdict::Unfinished {
+        message.push_str(&format!(" at {}", machine.shown(&fault.joints)));
+    }
+    if fault.at_most.is_finite() && fault.verdict != Verdict::Unfinished {
         let [x, y, z] = fault.point.into();
         message.push_str(&format!(", on {one} at [{x:.3}, {y:.3}, {z:.3}]"));
     }

@@ -184,7 +184,7 @@ fn no_body_is_clear_of_what_it_comes_near_to() {
         // Half of the bodies begin above the tip, so that many stay clear.
         let low = if rng.pick(2) == 0 { 0.0 } else { rng.range(5.0, 40.0) };
         let profile = vec![[low, r], [low + rng.range(5.0, 40.0), r]];
-        let mut watched = Watched::new(case.mounted(&profile), profile.clone());
+        let mut watched = Watched::new(case.mounted(&profile), profile.clone(), &profile);
         let keep = rng.order(-2.0, 0.5);
         let independent = way == Interpolation::Axes && rng.pick(3) == 0;
         let interpolation = &way;

@@ -113,6 +113,7 @@ fn a_stock_hangs_on_what_carries_it() {
         "on = \"w\"\nblock = [[15, -30, -330], [50, 30, -300]]",
         "on = \"b\"\nblock = [[-20, -20, -330], [20, 20, -300]]",
     );
+    let on_bed = on_bed + "[clearance]\nignore = [[\"stock left\", \"stock right\"]]\n";
     let plunge = "G0 X0. Y80.\nG1 Z-6. F300.\nX60.\nY90.";
     let (_, said, clear) = proven(&on_bed, plunge, &["--csv", "lines.csv"]);
     assert!(clear, "{said}");

@@ -105,16 +105,28 @@ impl Mounted {
             let stray = if way.independent { lean(gone.norm()) } else { 0.0 };
             return Some([(gone - from.axis * gone.dot(&from.axis)).norm() + stray, along + stray]);
         }
-        if way.independent || !self.on_part || turns(way.solver.chain(), way.ends) {
+        if !self.slides(way) {
             return None;
         }
         let tips = way.ends.map(|stance| stance.pose.tip);
-        let (curve, axis) = (way.interpolation.curve(), way.ends[0].pose.axis);
+        let axis = way.ends[0].pose.axis;
         // Of a spline it is known to a thousandth.
-        let length = 1.002 * curve.length(tips);
-        let level = matches!(curve, Curve::Arc { normal, .. } if normal.cross(&axis).norm() < 1e-9);
+        let length = 1.002 * way.interpolation.curve().length(tips);
         let rise = libm::fabs((tips[1] - tips[0]).dot(&axis));
-        Some([length, if level { rise } else { length }])
+        Some([length, if self.is_level(way) { rise } else { length }])
+    }
+
+    /// All of it goes as its tip does in the part frame.
+    fn slides(&self, way: &Way<'_>) -> bool {
+        self.on_part && !way.independent && !turns(way.solver.chain(), way.ends)
+    }
+
+    /// It goes so, and on an arc about its own axis.
+    fn is_level(&self, way: &Way<'_>) -> bool {
+        let axis = way.ends[0].pose.axis;
+        let about = |normal: &Vector3<f64>| normal.cross(&axis).norm() < 1e-9;
+        let curve = way.interpolation.curve();
+        self.slides(way) && matches!(curve, Curve::Arc { normal, .. } if about(normal))
     }
 
     /// No point of it is farther from where it is at the `middle` of a piece, mm, anywhere on the piece.
@@ -151,6 +163,12 @@ fn cut_along(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) 
     for end in &ends {
         taken.volume += field.remove(cutter, end);
     }
+    // On an arc about the tool axis the tip goes evenly from the height of one end to that of the other.
+    let level = tool.is_level(way);
+    let highest = level.then(|| {
+        let [from, to] = ends.map(|end| ends[0].axis.dot(&end.tip));
+        from.max(to)
+    });
     let step = field.cell().max();
     let most = if way.independent { MOST_STEPS_APART } else { MOST_STEPS };
     let mut waiting: Vec<Piece> = way.whole().into_iter().collect();
@@ -182,7 +200,7 @@ fn cut_along(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) 
         };
         let aside = if turning { reach } else { piece.stray };
         let tips = [heights[0].min(heights[1]) - aside, heights[0].max(heights[1]) + aside];
-        let strays = fine.then_some(Strays { around, before, tips, aside });
+        let strays = fine.then_some(Strays { around, before, tips, aside, highest });
         taken += field.cut_standing(cutter, ends, &middle, strays);
         (lost, before) = (lost || !fine, Some(around).filter(|_| fine));
     }

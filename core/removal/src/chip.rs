@@ -47,6 +47,9 @@ impl Chip {
         let Volume { at_least, at_most } = &mut self.volume;
         *at_most = at_most.min(volume);
         *at_least = at_least.min(*at_most);
+        if *at_most <= 0.0 {
+            self.engagement = None;
+        }
     }
 }
 
@@ -92,6 +95,8 @@ pub(crate) struct Gauge {
     across: Option<Vector3<f64>>,
     /// The tool strays aside from its way by no more than this, mm.
     aside: f64,
+    /// The highest that its tip is anywhere on a way in pieces, without a turn.
+    highest: Option<f64>,
     /// What certainly is taken, and what may be.
     certain: Swath,
     possible: Swath,
@@ -105,13 +110,18 @@ impl Gauge {
         let [one, other] = [from, to].map(|pose| from.axis.dot(&pose.tip));
         let tips = [one.min(other), one.max(other)];
         let (certain, possible) = (Swath::NOTHING, Swath::NOTHING);
-        Self { axis: from.axis, tips, across, aside: 0.0, certain, possible }
+        Self { axis: from.axis, tips, across, aside: 0.0, highest: None, certain, possible }
     }
 
     /// The tool stands at a pose.
     pub fn stand(&mut self, pose: &ToolPose) {
         let tip = pose.axis.dot(&pose.tip);
         (self.axis, self.tips, self.aside) = (pose.axis, [tip; 2], 0.0);
+    }
+
+    /// Nowhere on its way, which has more pieces, is its tip higher along its axis than this, mm.
+    pub fn no_higher(&mut self, highest: Option<f64>) {
+        self.highest = highest;
     }
 
     /// It goes about there: its tip between two heights along its axis, and aside from its way by no more than this, mm.
@@ -131,6 +141,20 @@ impl Gauge {
             let Swath { depth, sides: known } = &mut self.certain;
             *depth = depth.max(top - self.tips[1]);
             *known = [known[0].min(sides[0]), known[1].max(sides[1])];
+        }
+    }
+
+    /// Stretches of a prism along Z that one of the pieces of the way takes for certain: how deep that is.
+    pub fn certain_somewhere(
+        &mut self,
+        grid: &Grid,
+        place: [usize; 2],
+        stretches: impl Iterator<Item = Stretch>,
+    ) {
+        let Some(highest) = self.highest else { return };
+        for stretch in stretches {
+            let (top, _) = self.extents(&grid.block(place, stretch));
+            self.certain.depth = self.certain.depth.max(top - highest);
         }
     }
 

@@ -210,8 +210,9 @@ impl Field {
     ) -> Chip {
         let mut gauge = Gauge::new(ends);
         gauge.stand(pose);
+        gauge.no_higher(strays.as_ref().and_then(|strays| strays.highest));
         let mut volume = self.remove_at(cutter, pose, Some(&mut gauge));
-        if let Some(Strays { around, before, tips, aside }) = strays {
+        if let Some(Strays { around, before, tips, aside, .. }) = strays {
             gauge.stray(tips, aside);
             volume += self.doubt_around(cutter, &around, before.as_ref(), Some(&mut gauge));
         }
@@ -281,6 +282,7 @@ impl Field {
                     if let Some(gauge) = &mut gauge {
                         gauge.possible(grid, place, within(left, stretch));
                         gauge.certain(grid, place, within(lower.at(place), stretch));
+                        gauge.certain_somewhere(grid, place, within(certain, stretch));
                     }
                 }
             };
@@ -389,6 +391,8 @@ pub(crate) struct Strays {
     pub tips: [f64; 2],
     /// How far it goes aside, mm.
     pub aside: f64,
+    /// How high the tip is at most anywhere on the whole way, mm, where that is known.
+    pub highest: Option<f64>,
 }
 
 impl Around {

@@ -70,16 +70,16 @@ impl TurnedProfile {
         // To the right of the way from one end to the other is what the profile bounds.
         let side = if hollow { -height / chord } else { height / chord };
         let centre = [0.5 * (from[0] + to[0]) + side * dr, 0.5 * (from[1] + to[1]) - side * dz];
-        // Angles from the direction of z: with the clock from PI down to 0 if it bulges, else on from PI to two PI.
+        // Angles from the direction of z: from PI down to 0 if it bulges, else on from PI to two PI. Rounding tells the ends of
+        // half a turn by either sign.
         let angle = |[z, r]: [f64; 2]| libm::atan2(r - centre[1], z - centre[0]);
         let [start, end] = match hollow {
-            false => [angle(from), angle(to)],
+            false => [angle(from), angle(to)].map(|at| if at < -FRAC_PI_2 { at + TAU } else { at }),
             true => [angle(from), angle(to)].map(|at| if at < SAME { at + TAU } else { at }),
         };
         let range = if hollow { [PI, TAU] } else { [0.0, PI] };
         let inside = |at: f64| (range[0] - SAME..=range[1] + SAME).contains(&at);
         let rises = if hollow { end > start } else { start > end };
-        // At the left pole a full half turn may be told by either sign.
         if !(inside(start) && inside(end) && rises) {
             return Err(NoArc::Back);
         }

@@ -5,13 +5,16 @@ use post_clearance::convex::Convex;
 use post_machine::kinematics::Joints;
 
 use crate::field::Field;
-use crate::profile::ToolPose;
+use crate::profile::{Frustum, ToolPose, frusta};
 
 /// Ways that are remembered, the latest ones.
 const MOST: usize = 512;
 
 /// Tool axes whose difference is no more than this are the same: what rounding leaves of equal words.
 const SAME: f64 = 1e-7;
+
+/// Radii that differ by no more are the same, mm.
+const AS_THICK: f64 = 1e-9;
 
 /// Half of the last place of a word, mm or degrees: controls have three decimals or more.
 const HALF_PLACE: f64 = 0.5e-3;
@@ -83,6 +86,7 @@ fn climb(from: &ToolPose, to: &ToolPose) -> (bool, f64) {
 /// Where a tool has been since it was changed.
 #[derive(Clone, Debug)]
 pub struct Been {
+    profile: Vec<[f64; 2]>,
     heights: Option<Heights>,
     gone: Vec<Gone>,
     next: usize,
@@ -109,7 +113,7 @@ impl Been {
                 widest: profile.iter().map(|point| point[1]).fold(0.0, f64::max),
             }
         });
-        Self { heights, gone: Vec::new(), next: 0 }
+        Self { profile: profile.to_vec(), heights, gone: Vec::new(), next: 0 }
     }
 
     /// The tool went straight from one pose to the other, without turning, and whatever was there is gone.
@@ -146,23 +150,46 @@ impl Been {
     /// comes there, mm: this is no thicker, and what of it stays above where they began is clear of what may be left, or has
     /// been there before.
     pub fn leads(&self, field: &mut Field, edge: f64, [from, to]: [ToolPose; 2]) -> bool {
-        let Some(heights) = self.heights else { return false };
         let (axial, climb) = climb(&from, &to);
-        if !axial || climb >= 0.0 || heights.full > edge {
+        let Some(Lead { cut, thickens, top, widest }) = self.lead(edge) else { return false };
+        if !axial || climb >= 0.0 {
             return false;
         }
-        // As high as they are as thick as they get, and from where on the tool is thicker, above where it begins and ends.
-        let cut = heights.thins.min(edge);
-        if heights.thickens >= heights.top && self.covers_above(cut, [from; 2]) {
+        if thickens >= top && self.covers_above(cut, [from; 2]) {
             return true;
         }
-        let low = cut.min(heights.thickens + climb);
-        if low >= heights.top {
+        let low = cut.min(thickens + climb);
+        if low >= top {
             return true;
         }
-        let ends = [low, heights.top].map(|height| from.tip + from.axis * height);
-        let rest = Convex::frustum(ends, from.axis, [heights.widest; 2]);
+        let ends = [low, top].map(|height| from.tip + from.axis * height);
+        let rest = Convex::frustum(ends, from.axis, [widest; 2]);
         field.apart(&[rest]).at_least > 0.0
+    }
+
+    /// What edges up to a height above the tip leave free above them, mm; none of a profile that goes back.
+    fn lead(&self, edge: f64) -> Option<Lead> {
+        self.heights?;
+        let frusta = frusta(&self.profile);
+        let ends = |frustum: &Frustum| {
+            let high = frustum.z[1].min(edge);
+            [(frustum.z[0], frustum.r[0]), (high, frustum.at(high))]
+        };
+        let edges = || frusta.iter().filter(|frustum| frustum.z[0] < edge).flat_map(ends);
+        let wide = edges().map(|(_, r)| r).reduce(f64::max)? + AS_THICK;
+        let cut =
+            edges().filter(|(_, r)| r + 2.0 * AS_THICK >= wide).map(|(z, _)| z).reduce(f64::max)?;
+        let above = frusta.iter().filter(|frustum| frustum.z[1] > edge);
+        let thicker = above.filter_map(|frustum| {
+            let low = frustum.z[0].max(edge);
+            (frustum.at(low).max(frustum.r[1]) > wide).then_some(low)
+        });
+        Some(Lead {
+            cut,
+            thickens: thicker.fold(f64::INFINITY, f64::min),
+            top: frusta.last()?.z[1],
+            widest: frusta.iter().flat_map(|frustum| frustum.r).fold(0.0, f64::max),
+        })
     }
 
     /// A straight way without turning that is free: it goes where it has been before, or above that along its axis, and what
@@ -187,6 +214,16 @@ impl Been {
         let rest = Convex::frustum(ends, from.axis, [heights.widest; 2]);
         axial && field.is_some_and(|field| field.apart(&[rest]).at_least > 0.0)
     }
+}
+
+/// What edges leave free that go straight down, mm above the tip.
+struct Lead {
+    /// The highest at which they are as thick as they get.
+    cut: f64,
+    /// From here on the tool is thicker than they are.
+    thickens: f64,
+    top: f64,
+    widest: f64,
 }
 
 /// How a way lies over one that is gone.

@@ -81,6 +81,11 @@ impl Frustum {
         (self.r[1] - self.r[0]) / (self.z[1] - self.z[0])
     }
 
+    /// Its radius at a height of it, mm.
+    pub(crate) fn at(&self, z: f64) -> f64 {
+        self.r[0] + self.slope() * (z - self.z[0])
+    }
+
     /// Where a line is inside of it.
     pub(crate) fn inside(&self, line: &Line) -> Option<[f64; 2]> {
         let [low, high] = line.within(self.z, self.r[0].max(self.r[1]))?;
@@ -164,8 +169,7 @@ pub fn between(profile: &[[f64; 2]], [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     for frustum in frusta(profile) {
         let [low, high] = [frustum.z[0].max(from), frustum.z[1].min(to)];
         if low < high {
-            let radius = |z| frustum.r[0] + frustum.slope() * (z - frustum.z[0]);
-            points.extend([[low, radius(low)], [high, radius(high)]]);
+            points.extend([[low, frustum.at(low)], [high, frustum.at(high)]]);
         }
     }
     points.dedup();
@@ -274,8 +278,7 @@ pub(crate) fn along_axis([from, to]: [ToolPose; 2]) -> Option<(ToolPose, f64)> {
 pub(crate) fn swept_ahead(frusta: &[Frustum], depth: f64, [aside, along]: [f64; 2]) -> f64 {
     let front = frusta.iter().map(|frustum| {
         let [low, high] = [frustum.z[0], frustum.z[1].min(depth)];
-        let radius = |z| frustum.r[0] + frustum.slope() * (z - frustum.z[0]);
-        if low < high { (high - low) * (radius(low) + radius(high)) } else { 0.0 }
+        if low < high { (high - low) * (frustum.at(low) + frustum.at(high)) } else { 0.0 }
     });
     let wide = frusta.iter().flat_map(|frustum| frustum.r).fold(0.0, f64::max);
     aside * front.sum::<f64>() + along * std::f64::consts::PI * wide * wide

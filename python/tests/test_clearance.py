@@ -182,7 +182,7 @@ def test_nothing_is_proven_that_samples_deny(tmp_path: Path) -> None:
     for _ in range(rounds(600)):
         made = world(rng, tmp_path, LIBRARY)
         proven = Proven(tmp_path)
-        # An arc of slides that are not square to one another, or one whose ends rounding takes off it.
+        # An arc whose ends rounding takes off it.
         if proven.refused:
             count["refused"] += 1
             continue

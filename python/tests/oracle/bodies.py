@@ -175,8 +175,13 @@ def bodies(machine: Machine) -> list[Body]:
         points, faces = stl(machine.folder / table["file"])
         return Body.mesh(name, link, points + shift, faces, kind=kind)
 
-    if "stock" in machine.file:
-        found.append(given("stock", 0, machine.file["stock"], machine.mount, "stock"))
+    stock = machine.file.get("stock", {})
+    plain = {"block", "cylinder", "file"} & stock.keys()
+    stocks = {"stock": stock} if plain else {f"stock {name}": table for name, table in stock.items()}
+    for name, table in stocks.items():
+        # One that hangs somewhere is drawn in the machine frame.
+        shift = np.zeros(3) if "on" in table else machine.mount
+        found.append(given(name, machine.link_of(table.get("on", "w")), table, shift, "stock"))
     for name, table in machine.file.get("fixture", {}).items():
         found.append(given(name, machine.link_of(table.get("on", "w")), table, np.zeros(3), "fixture"))
     for name, file in machine.file.get("solids", {}).items():
@@ -187,6 +192,26 @@ def bodies(machine: Machine) -> list[Body]:
     return found
 
 
+def expanded(profile: list) -> list:
+    """A profile without arcs: of each points on it, by the angles of a circle through both ends."""
+    points: list = []
+    for z, r, *way in profile:
+        for arc in way:
+            (low, first), size = points[-1], arc["arc"]
+            chord = np.array([z - low, r - first])
+            far = np.linalg.norm(chord)
+            middle = np.array([low + z, first + r]) / 2
+            height = math.sqrt(max(size * size - far * far / 4, 0.0))
+            aside = np.array([chord[1], -chord[0]]) / far
+            centre = middle + aside * math.copysign(height, size)
+            angle, half = math.atan2(first - centre[1], low - centre[0]), math.asin(min(1.0, far / 2 / abs(size)))
+            for share in np.linspace(0, 1, 33)[1:-1]:
+                at = angle - math.copysign(2 * half * share, size)
+                points.append([centre[0] + abs(size) * math.cos(at), centre[1] + abs(size) * math.sin(at)])
+        points.append([z, r])
+    return points
+
+
 def tool_bodies(machine: Machine, number: int, length: float) -> list[Body]:
     """Holder and cutter of a tool."""
     table = machine.file.get("tools", {}).get(str(number), {})
@@ -194,9 +219,9 @@ def tool_bodies(machine: Machine, number: int, length: float) -> list[Body]:
         return []
     found, link, axis = [], len(machine.axes), machine.tool_axis
     if table.get("holder"):
-        found.append(Body.turned(f"holder T{number}", link, table["holder"], machine.gauge, -axis, kind="holder"))
+        found.append(Body.turned(f"holder T{number}", link, expanded(table["holder"]), machine.gauge, -axis, kind="holder"))
     if table.get("cutter"):
-        found.append(Body.turned(f"cutter T{number}", link, table["cutter"], machine.tip(length), axis, kind="cutter"))
+        found.append(Body.turned(f"cutter T{number}", link, expanded(table["cutter"]), machine.tip(length), axis, kind="cutter"))
     return found
 
 

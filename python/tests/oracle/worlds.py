@@ -170,7 +170,14 @@ class Maker:
             x, y, z = rng.uniform(5, 40, 3).round(2)
             corners = f"block = [[{-x}, {-y}, {-z}], [{x}, {y}, {z}]]"
             turned = f"cylinder = [[0, 0, {-z}], [0, 0, {y}]]\nradius = {x}"
-            self.lines += ["[stock]", corners if self.chance(0.6) else turned]
+            shape = corners if self.chance(0.6) else turned
+            self.lines += ["[stock]", shape] if self.chance(0.5) else ["[stock.one]", shape]
+            if self.lines[-2] == "[stock.one]":
+                # Another one beside it, as a fixture has it.
+                at = low + rng.uniform(-60, 60, 3)
+                corners = numbers(np.array([at, at + rng.uniform(5, 60, 3)]))
+                letter = str(self.pick([*self.part, "w", "b"]))
+                self.lines += ["[stock.other]", f'on = "{letter}"', f"block = {corners}"]
         if self.chance(0.3):
             letter = str(self.pick(list(self.part + self.tool)))
             near = low if letter in self.part else nose
@@ -187,7 +194,16 @@ class Maker:
         ball = [[r - r * math.cos(angle), r * math.sin(angle)] for angle in np.linspace(0, math.pi / 2, 8)]
         wheel = [[0, 1.8 * r], [4, 1.8 * r], [4, r], [high, r]]
         profile = self.pick([[[0, r], [high, r]], [*ball, [high + r, r]], wheel])  # type: ignore[assignment]
-        self.lines.append(f"cutter = {numbers(np.array(profile))}")
+        drawn = numbers(np.array(profile))
+        if self.chance(0.3):
+            r = round(r, 3)
+            bull, barrel = round(0.4 * r, 3), round(high, 3)
+            ends = [f"[[0, 0], [{r}, {r}, {{ arc = {r} }}], [{high + r}, {r}]]"]
+            ends.append(f"[[0, 0], [0, {r - bull}], [{bull}, {r}, {{ arc = {bull} }}], [{high + r}, {r}]]")
+            ends.append(f"[[0, {r}], [{barrel}, {r}, {{ arc = {3 * barrel} }}]]")
+            ends.append(f"[[0, {r}], [{barrel}, {r}, {{ arc = {-9 * barrel} }}]]")
+            drawn = str(self.pick(ends))
+        self.lines.append(f"cutter = {drawn}")
         if self.register == 2:
             self.lines += ["[tools.2]", f"length = {self.lengths[2]}"]
 

@@ -43,6 +43,9 @@ pub struct Motion {
     /// How long it takes at the feed that the program states, minutes, no limit of any axis regarded; of a rapid at the
     /// axes' largest feeds, zero where the machine file names none.
     pub minutes: f64,
+    /// How long it would take as fast as it is anywhere on its way: less than `minutes` where its feed is one a revolution
+    /// and the control changes the speed of the spindle.
+    pub minutes_at_fastest: f64,
     /// The axes stand still at its end, whatever else holds: G9.
     pub stops: bool,
     /// It is part of a cycle's hole.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use post_grammar::SyncMark;
-use post_machine::description::surface_rpm;
+use post_machine::description::surface_rpm_on_way;
 
 /// What a block asks for that is no motion: tool, spindle, coolant, wait, stop, remark, offset.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,14 +95,13 @@ impl SpindleState {
         }
     }
 
-    /// Revolutions a minute by which a way between two tips (mm, part frame) takes as long as at its cutting speed; none
-    /// where it keeps none. The part turns about its Z.
-    pub fn surface_rpm(self, [from, to]: [Vector3<f64>; 2]) -> Option<f64> {
+    /// Revolutions a minute by which a way between two tips (mm, part frame) takes as long as at its cutting speed, and the
+    /// most of them; none where it keeps none. The part turns about its Z.
+    pub fn surface_rpm(self, [from, to]: [Vector3<f64>; 2]) -> Option<[f64; 2]> {
         let Self::Surface { speed, most, .. } = self else {
             return None;
         };
-        let radius = from.xy().norm().midpoint(to.xy().norm());
-        Some(surface_rpm(speed, radius, most.unwrap_or(f64::INFINITY)))
+        Some(surface_rpm_on_way(speed, [from.xy(), to.xy()], most.unwrap_or(f64::INFINITY)))
     }
 }
 

@@ -77,7 +77,7 @@ pub use schema::schema;
 pub use setting::Setting;
 pub use smoothing::{Smoothing, SmoothingRules};
 pub use solids::Solid;
-pub use spindle::{SpindleSpeeds, surface_rpm};
+pub use spindle::{SpindleSpeeds, surface_rpm_on_way};
 pub use stock::StockCut;
 pub use tools::{TOOL_FILE_ENDINGS, ToolData, ToolTable};
 pub use turned::{NoArc, TurnedProfile};

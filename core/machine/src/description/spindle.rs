@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::Vector2;
+
 use super::build::Builder;
 use super::file::SpindleFile;
 use crate::diagnostic::{Diagnostic, Short};
@@ -26,6 +28,34 @@ impl Default for SpindleSpeeds {
 /// Revolutions a minute that keep a cutting speed of `speed` m/min at `radius` mm, no more than `most`.
 pub fn surface_rpm(speed: f64, radius: f64, most: f64) -> f64 {
     (speed * 1000.0 / (TAU * radius)).min(most)
+}
+
+/// Revolutions a minute on a straight way between two places across the line of the spindle, mm, at a cutting speed of
+/// `speed` m/min and no more than `most`: those that the way takes as long with, and the most of them. A way that passes the
+/// line is taken to go through it.
+pub fn surface_rpm_on_way(speed: f64, [from, to]: [Vector2<f64>; 2], most: f64) -> [f64; 2] {
+    if !(speed > 0.0 && most > 0.0) {
+        return [0.0; 2];
+    }
+    let sign = if from.dot(&to) < 0.0 { -1.0 } else { 1.0 };
+    let ends = [from.norm(), sign * to.norm()];
+    let fastest = match sign > 0.0 {
+        true => surface_rpm(speed, ends[0].min(ends[1]), most),
+        false => most,
+    };
+    let way = ends[1] - ends[0];
+    if libm::fabs(way) < 1e-6 {
+        return [surface_rpm(speed, libm::fabs(ends[0]), most), fastest];
+    }
+    // Minutes of a turn at a radius are the larger of two: they grow with it, or are those of the largest speed.
+    let [grows, least] = [TAU / (speed * 1000.0), 1.0 / most];
+    let turned = |radius: f64| {
+        let size = libm::fabs(radius);
+        let bounded = size.min(least / grows);
+        let whole = least * bounded + 0.5 * grows * (size * size - bounded * bounded);
+        libm::copysign(whole, radius)
+    };
+    [way / (turned(ends[1]) - turned(ends[0])), fastest]
 }
 
 /// No spindle turns as fast, rpm.

@@ -1,8 +1,8 @@
 //! Feeds a revolution of the part: how long a cut takes follows from how fast the spindle turns on the way.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use post_machine::axis_words::unit_length;
-use post_machine::description::surface_rpm;
+use post_machine::description::surface_rpm_on_way;
 use post_machine::diagnostic::{Diagnostic, Short};
 use post_plugin::{Feed, Spindle};
 
@@ -16,8 +16,8 @@ pub(super) struct TurningSpeed {
     rpm: f64,
     /// The cutting speed that the control keeps, m/min.
     surface: Option<f64>,
-    /// Of the tip from the line of the spindle, which is Z of the part, mm.
-    radius: f64,
+    /// Of the tip across the line of the spindle, which is Z of the part, mm.
+    place: Vector2<f64>,
 }
 
 impl TurningSpeed {
@@ -38,17 +38,15 @@ impl TurningSpeed {
 
     /// The tip has come to a place, mm, part frame.
     pub(super) fn stand(&mut self, tip: Vector3<f64>) {
-        self.radius = tip.xy().norm();
+        self.place = tip.xy();
     }
 
     /// Revolutions a minute on the way to `tip`: those that the way takes as long with, and the most of them.
     fn on_way(&self, tip: Vector3<f64>) -> [f64; 2] {
-        let ends = [self.radius, tip.xy().norm()];
-        let at = |radius| match self.surface {
-            Some(speed) => surface_rpm(speed, radius, self.rpm),
-            None => self.rpm,
-        };
-        [at(ends[0].midpoint(ends[1])), at(ends[0].min(ends[1]))]
+        match self.surface {
+            Some(speed) => surface_rpm_on_way(speed, [self.place, tip.xy()], self.rpm),
+            None => [self.rpm; 2],
+        }
     }
 }
 

@@ -9,8 +9,25 @@ use crate::{Curve, Interpolation, MotionKind, Stance};
 /// A tip that goes less far than this stands, mm: turned about itself it comes back to its last digits.
 const STANDS: f64 = 1e-9;
 
+/// How fast and how long a motion goes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct MotionTime {
+    /// Feed of the tip against the part, mm/min.
+    pub feed: f64,
+    /// Minutes.
+    pub minutes: f64,
+    /// Minutes, as fast as it is anywhere on its way.
+    pub at_fastest: f64,
+}
+
+impl MotionTime {
+    fn even(feed: f64, minutes: f64) -> Self {
+        Self { feed, minutes, at_fastest: minutes }
+    }
+}
+
 impl ControlState {
-    /// Feed of the tip against the part, mm/min, and minutes of a motion; zero where the program states none.
+    /// How fast and how long a motion goes; zero where the program states no feed.
     #[inline]
     pub(super) fn timed(
         &self,
@@ -18,12 +35,12 @@ impl ControlState {
         way: &Interpolation,
         from: &Stance,
         to: &Stance,
-    ) -> (f64, f64) {
+    ) -> MotionTime {
         if kind == MotionKind::Rapid {
-            return (0.0, self.rapid_minutes(from, to));
+            return MotionTime::even(0.0, self.rapid_minutes(from, to));
         }
         let Some(feed) = self.modal.feed.filter(|feed| *feed > 0.0) else {
-            return (0.0, 0.0);
+            return MotionTime::default();
         };
         let tip = tip_length(way, from, to);
         let mode = if kind == MotionKind::Thread {
@@ -31,6 +48,7 @@ impl ControlState {
         } else {
             self.modal.feed_mode
         };
+        let mut share = 1.0;
         let minutes = match mode {
             FeedMeaning::Inverse => match self.machine.control.inverse_time {
                 InverseTime::Minutes => 1.0 / feed,
@@ -39,14 +57,21 @@ impl ControlState {
             FeedMeaning::PerMinute => self.feed_length(way, tip, from, to) / feed,
             FeedMeaning::PerRevolution => {
                 let ends = [from.pose.tip, to.pose.tip];
-                let rpm = self.state.spindle.surface_rpm(ends).unwrap_or(self.modal.speed);
+                let fixed = [self.modal.speed; 2];
+                let [rpm, fastest] = self.state.spindle.surface_rpm(ends).unwrap_or(fixed);
                 if rpm <= 0.0 {
-                    return (0.0, 0.0);
+                    return MotionTime::default();
+                }
+                if fastest.is_finite() {
+                    share = rpm / fastest;
                 }
                 self.feed_length(way, tip, from, to) / (feed * rpm)
             }
         };
-        if minutes > 0.0 { (tip / minutes, minutes) } else { (0.0, 0.0) }
+        match minutes > 0.0 {
+            true => MotionTime { feed: tip / minutes, minutes, at_fastest: minutes * share },
+            false => MotionTime::default(),
+        }
     }
 
     /// The length that F a minute counts along, mm, or degrees where rotary axes alone turn.

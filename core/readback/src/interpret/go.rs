@@ -7,6 +7,7 @@ use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 use post_motion::path::BSpline;
 use std::f64::consts::TAU;
 
+use super::feed::MotionTime;
 use super::state::{AxisLetters, ControlState, OrientationMode};
 use crate::{BlockEffect, Curve, Interpolation, Motion, MotionKind, Stance};
 
@@ -507,7 +508,7 @@ impl ControlState {
                 MotionKind::Feed | MotionKind::Thread => self.look_where_it_begins(),
             }
         }
-        let (feed, minutes) = self.timed(kind, &way, &from, &self.at);
+        let MotionTime { feed, minutes, at_fastest } = self.timed(kind, &way, &from, &self.at);
         let state = self.hand_on_state();
         self.done.push(BlockEffect::Motion(Motion {
             line: self.line,
@@ -518,6 +519,7 @@ impl ControlState {
             to: self.at,
             feed,
             minutes,
+            minutes_at_fastest: at_fastest,
             stops: self.exact_stop,
             hole: self.hole,
             machine: self.in_machine,

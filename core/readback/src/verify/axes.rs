@@ -203,8 +203,8 @@ impl AxisLimitCheck {
         if !self.limited || motion.minutes <= 0.0 || self.is_slow(motion, bend) {
             return None;
         }
-        let (minutes, joint) = self.least_minutes(machine, motion, motion.minutes)?;
-        let factor = minutes / motion.minutes;
+        let (minutes, joint) = self.least_minutes(machine, motion, motion.minutes_at_fastest)?;
+        let factor = minutes / motion.minutes_at_fastest;
         if factor <= 1.0 + SHARE {
             return None;
         }
@@ -237,7 +237,8 @@ impl AxisLimitCheck {
         };
         motion.state.solver.chain().joints().iter().enumerate().all(|(index, joint)| {
             let faster = if joint.rotary { 0.0 } else { 0.5 * bend };
-            (libm::fabs(to[index] - from[index]) + faster) * self.slowness[index] <= motion.minutes
+            (libm::fabs(to[index] - from[index]) + faster) * self.slowness[index]
+                <= motion.minutes_at_fastest
         })
     }
 

@@ -135,11 +135,12 @@ impl<C: Course> Verifier<'_, C> {
         if feed >= asked * (1.0 - SHARE - rounded) - place {
             return FeedVerdict::AsAsked;
         }
+        // An axis is as fast as it may be where the motion is fastest.
+        let quick = motion.minutes_at_fastest;
         match self.axes.least_minutes(self.machine, motion, 0.0) {
             // Of a slow feed the last place is much, and it is rounded down.
             Some((minutes, joint))
-                if motion.minutes <= minutes * 1.05
-                    || feed + 2.0 * place >= 0.95 * way / minutes =>
+                if quick <= minutes * 1.05 || way / quick + 2.0 * place >= 0.95 * way / minutes =>
             {
                 FeedVerdict::Limited(FeedLimit::Axis(joint))
             }
@@ -180,7 +181,8 @@ impl<C: Course> Verifier<'_, C> {
 /// The feed that an element asks for in a revolution of the part, mm/min as fast as the part turns on the motion.
 fn turned_feed(motion: &Motion, element: &Element) -> Option<f64> {
     let ends = [motion.from.pose.tip, motion.to.pose.tip];
-    Some(element.turned_feed? * motion.state.spindle.surface_rpm(ends)?)
+    let [rpm, _] = motion.state.spindle.surface_rpm(ends)?;
+    Some(element.turned_feed? * rpm)
 }
 
 /// What limits a feed.

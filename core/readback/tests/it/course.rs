@@ -58,6 +58,7 @@ fn motion(state: &Arc<MachineState>, way: Interpolation, from: Joints, to: Joint
         to: stance(to),
         feed: 1000.0,
         minutes: 0.1,
+        minutes_at_fastest: 0.1,
         stops: false,
         hole: false,
         machine: false,

@@ -95,6 +95,7 @@ fn program(
             to: stance(ends[1]),
             feed: 500.0,
             minutes: (ends[1].tip - ends[0].tip).norm() / 500.0,
+            minutes_at_fastest: (ends[1].tip - ends[0].tip).norm() / 500.0,
             stops: false,
             hole: false,
             machine: false,

@@ -185,6 +185,7 @@ impl Does {
             to: stance(to),
             feed: 500.0,
             minutes,
+            minutes_at_fastest: minutes,
             stops: false,
             hole: false,
             machine: false,
@@ -697,6 +698,7 @@ fn limits_of_the_axes_are_told_and_feeds_compared() {
             Does::at(0.0, 0.0, 10.0).rapid(0.0, 0.0, 0.0).cut(600.0, 0.0, 0.0).rapid(0.0, 0.0, 0.0);
         if let BlockEffect::Motion(motion) = &mut does.done[1] {
             motion.minutes = minutes;
+            motion.minutes_at_fastest = minutes;
         }
         let found = codes(&does, asks());
         assert!(found.iter().any(|found| found.0 == code), "{found:?}");

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use post_machine::diagnostic::Diagnostic;
 
+use post_job::disk;
 use post_job::failure::Failure;
 use post_job::files::{FileFault, PathArg};
 use post_job::job_file::{
@@ -217,7 +218,7 @@ fn job_of_head(
     // Before what is missing besides: a name that was mistyped.
     if let Some(program) = words.get(2).map(PathBuf::from)
         && !program.as_os_str().as_encoded_bytes().starts_with(b"-")
-        && let Err(error) = program.metadata()
+        && let Err(error) = disk::metadata(&program)
         && error.kind() == ErrorKind::NotFound
     {
         return Err(FileFault::read(&program, error).into());

@@ -7,6 +7,9 @@ use gen_lsp_types::{
 
 use super::commands;
 
+/// Commands run in a process of their own, which a browser has none of.
+const STARTS_PROGRAMS: bool = !cfg!(target_family = "wasm");
+
 /// What it can do. Columns are UTF-16, which every editor speaks.
 pub fn capabilities() -> ServerCapabilities {
     ServerCapabilities {
@@ -37,10 +40,10 @@ pub fn capabilities() -> ServerCapabilities {
             }
             .into(),
         ),
-        code_lens_provider: Some(CodeLensOptions::default()),
+        code_lens_provider: STARTS_PROGRAMS.then(CodeLensOptions::default),
         document_symbol_provider: Some(true.into()),
         folding_range_provider: Some(true.into()),
-        execute_command_provider: Some(ExecuteCommandOptions {
+        execute_command_provider: STARTS_PROGRAMS.then(|| ExecuteCommandOptions {
             commands: commands::NAMES.map(str::to_owned).to_vec(),
             ..ExecuteCommandOptions::default()
         }),

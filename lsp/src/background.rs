@@ -63,6 +63,10 @@ impl Token {
 
     /// Waits until the text has rested; false if the work is given up before.
     pub fn rested(&self) -> bool {
+        if cfg!(target_family = "wasm") {
+            // Whoever asks for the work has let it rest.
+            return !self.is_given_up();
+        }
         let begin = Instant::now();
         while begin.elapsed() < REST {
             if self.is_given_up() {
@@ -71,6 +75,35 @@ impl Token {
             thread::sleep(LOOK);
         }
         !self.is_given_up()
+    }
+}
+
+/// Begins work on a thread of its own; where there are none it waits until [`work`] is called.
+#[cfg(not(target_family = "wasm"))]
+pub fn begin(work: impl FnOnce() + Send + 'static) {
+    thread::spawn(work);
+}
+
+/// Work that waits.
+#[cfg(target_family = "wasm")]
+static WAITING: Mutex<std::collections::VecDeque<Box<dyn FnOnce() + Send>>> =
+    Mutex::new(std::collections::VecDeque::new());
+
+/// Work that waits until [`work`] is called.
+#[cfg(target_family = "wasm")]
+pub fn begin(work: impl FnOnce() + Send + 'static) {
+    WAITING.lock().unwrap_or_else(PoisonError::into_inner).push_back(Box::new(work));
+}
+
+/// Does all work that waits: none, where threads do it.
+pub fn work() {
+    #[cfg(target_family = "wasm")]
+    loop {
+        let next = WAITING.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+        let Some(work) = next else {
+            return;
+        };
+        work();
     }
 }
 

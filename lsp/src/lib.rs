@@ -3,6 +3,7 @@
 //! | part | does |
 //! |---|---|
 //! | `transport` | messages over standard input and output |
+//! | `embedded` | the server inside of another program: a message in, messages out |
 //! | `server` | the loop: what the editor asks and tells, one message after the other |
 //! | `announced` | what the server says it can do |
 //! | `answers` | a question, and what is answered at once |
@@ -25,6 +26,7 @@ mod background;
 mod cl;
 mod commands;
 mod document;
+mod embedded;
 mod findings;
 mod machine;
 mod nc;
@@ -41,6 +43,8 @@ use post_machine::diagnostic::Diagnostic;
 
 use post_job::failure::Failure;
 use post_job::session::Session;
+
+pub use embedded::Embedded;
 
 /// What the server is started with. What an editor sends later never names folders of plugins: a workspace may be a
 /// stranger's.

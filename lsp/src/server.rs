@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::thread;
 
 use gen_lsp_types::{
     CodeActionParams, CodeLensParams, CompletionParams, DefinitionParams,
@@ -19,7 +18,7 @@ use lsp_server::{
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
-use super::background::{Outlet, Token};
+use super::background::{self, Outlet, Token};
 use super::document::{Document, FileKind, Snapshot};
 use super::machine::library::Library;
 use super::tiers::{self, ShownMachine};
@@ -32,28 +31,10 @@ use post_job::session::Session;
 /// What comes in is no protocol.
 pub fn run(session: &Session, connection: &Connection, options: Options) -> Result<(), String> {
     let (id, params) = connection.initialize_start().map_err(|fault| fault.to_string())?;
-    let about = json!({
-        "capabilities": announced::capabilities(),
-        "serverInfo": { "name": "post", "version": env!("CARGO_PKG_VERSION") },
-    });
-    connection.initialize_finish(id, about).map_err(|fault| fault.to_string())?;
+    connection.initialize_finish(id, about()).map_err(|fault| fault.to_string())?;
     let sender = connection.sender.clone();
     let outlet = Outlet::new(move |message| drop(sender.send(message)));
-    let started = ShownMachine { machine: options.machine, tool_length: options.tool_length };
-    let mut server = Server {
-        shown: started.clone(),
-        started,
-        library: Library {
-            session: session.clone(),
-            machines: options.machines,
-            plugins: options.plugins,
-            open: BTreeMap::new(),
-        },
-        documents: BTreeMap::new(),
-        pending: Vec::new(),
-        outlet,
-    };
-    server.settings(&params["initializationOptions"]);
+    let mut server = Server::new(session, options, outlet, &params);
     for message in &connection.receiver {
         match message {
             Message::Request(request) => match connection.handle_shutdown(&request) {
@@ -70,6 +51,14 @@ pub fn run(session: &Session, connection: &Connection, options: Options) -> Resu
     Ok(())
 }
 
+/// What the server is, and what it can do.
+pub fn about() -> Value {
+    json!({
+        "capabilities": announced::capabilities(),
+        "serverInfo": { "name": "post", "version": env!("CARGO_PKG_VERSION") },
+    })
+}
+
 /// A question whose answer is worked out in the background.
 struct Pending {
     id: RequestId,
@@ -77,7 +66,8 @@ struct Pending {
     token: Token,
 }
 
-struct Server {
+/// A server at work.
+pub struct Server {
     /// As the command line says.
     started: ShownMachine,
     /// As the editor's settings say over that.
@@ -105,6 +95,26 @@ fn params<P: DeserializeOwned>(value: Value) -> Result<P, RequestError> {
 }
 
 impl Server {
+    /// One for an editor that has asked for it with `params`, and hears through `outlet`.
+    pub fn new(session: &Session, options: Options, outlet: Outlet, params: &Value) -> Self {
+        let started = ShownMachine { machine: options.machine, tool_length: options.tool_length };
+        let mut server = Self {
+            shown: started.clone(),
+            started,
+            library: Library {
+                session: session.clone(),
+                machines: options.machines,
+                plugins: options.plugins,
+                open: BTreeMap::new(),
+            },
+            documents: BTreeMap::new(),
+            pending: Vec::new(),
+            outlet,
+        };
+        server.settings(&params["initializationOptions"]);
+        server
+    }
+
     /// The editor's settings: `{ "post": { "machine": …, "toolLength": … } }`, or what stands in `post`. What it leaves
     /// open is as the server was started.
     fn settings(&mut self, settings: &Value) {
@@ -122,7 +132,8 @@ impl Server {
         }
     }
 
-    fn request(&mut self, request: Request) {
+    /// Answers a question, now or later.
+    pub fn request(&mut self, request: Request) {
         let Request { id, method, params } = request;
         // A fault of the program must not take the editor's server away; the question is told.
         let answered = catch_unwind(AssertUnwindSafe(|| self.answer(&id, &method, params)));
@@ -255,7 +266,7 @@ impl Server {
         self.pending.retain(|pending| !pending.token.is_done());
         self.pending.push(Pending { id: id.clone(), uri: uri.clone(), token: token.clone() });
         let (id, outlet) = (id.clone(), self.outlet.clone());
-        thread::spawn(move || {
+        background::begin(move || {
             let answer = catch_unwind(AssertUnwindSafe(|| work(&token)));
             let result = match answer {
                 Ok(Ok(Some(value))) if !token.is_given_up() => Ok(value),
@@ -308,7 +319,8 @@ impl Server {
         Ok(None)
     }
 
-    fn told(&mut self, told: Notification) {
+    /// Takes what the editor tells.
+    pub fn told(&mut self, told: Notification) {
         let Notification { method, params } = told;
         // What cannot be read is left out: there is nobody to answer.
         let _ = catch_unwind(AssertUnwindSafe(|| self.take(&method, params)));

@@ -1,12 +1,11 @@
 //! What is found of a text: at once, and later in the background.
 
 use std::sync::Arc;
-use std::thread;
 
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
 
-use super::background::{BackgroundFacts, Outlet, Token, WorkProduct};
+use super::background::{self, BackgroundFacts, Outlet, Token, WorkProduct};
 use super::document::{Document, FileKind, Snapshot};
 use super::machine::library::Library;
 use super::{cl, findings, machine, nc};
@@ -53,7 +52,7 @@ pub fn begin(document: &Document, library: &Library, shown: &ShownMachine, to: &
         shown: shown.clone(),
         to: to.clone(),
     };
-    thread::spawn(move || match kind {
+    background::begin(move || match kind {
         FileKind::Machine => work.derive(),
         FileKind::Cl => work.post(),
         FileKind::Nc => work.read_back(),

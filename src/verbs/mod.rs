@@ -54,6 +54,7 @@ use place::PlaceArguments;
 use plugin::PluginArguments;
 use post::PostArguments;
 use post_cli::failure::CommandFault;
+use post_job::disk;
 use post_job::session::Session;
 use predict::PredictArguments;
 use print_schema::SchemaArguments;
@@ -282,7 +283,7 @@ pub fn moved() -> Option<clap::Error> {
     let verb = ["study", "plan"].into_iter().find(|verb| first == *verb)?;
     let message = format!("`post {verb}` is `papers {verb}` now");
     let fault = || AllVerbs::command().error(ErrorKind::InvalidSubcommand, message);
-    (!Path::new(verb).exists()).then(fault)
+    (!disk::exists(Path::new(verb))).then(fault)
 }
 
 /// What is wrong with a command line that begins with a misspelt verb: clap takes it for a CL file, and complains of what
@@ -296,7 +297,7 @@ pub fn misspelt(fault: &clap::Error) -> Option<clap::Error> {
     let mut command = AllVerbs::command();
     let verbs: Vec<String> =
         command.get_subcommands().map(|verb| verb.get_name().to_owned()).collect();
-    if verbs.iter().any(|verb| verb == first) || Path::new(first).exists() {
+    if verbs.iter().any(|verb| verb == first) || disk::exists(Path::new(first)) {
         return None;
     }
     let meant = nearest(first, verbs.iter().map(String::as_str))?;

@@ -55,7 +55,7 @@ impl View {
     /// # Errors
     /// There is no place for the report.
     pub fn new(arguments: &ViewArguments) -> Result<Self, Failure> {
-        let waiting = std::env::temp_dir();
+        let waiting = post_job::disk::temp_dir();
         let folder = tempfile::Builder::new().prefix("post-view-").tempdir_in(&waiting);
         let folder = folder.map_err(|error| FileFault::NoWaiting {
             name: "the report".to_owned(),

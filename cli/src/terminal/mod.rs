@@ -1,6 +1,10 @@
 //! What the user sees: results on standard output; questions, progress and messages on standard error.
 
 mod findings;
+#[cfg(not(target_family = "wasm"))]
+mod progress;
+#[cfg(target_family = "wasm")]
+#[path = "no_progress.rs"]
 mod progress;
 
 use std::borrow::Cow;
@@ -82,7 +86,7 @@ pub fn all_printed(session: &Session) -> Result<(), Failure> {
 
 /// Prints what is no result to standard error, such as questions; a closed one leaves nobody to tell.
 pub fn tell(text: &str) {
-    let mut stderr = io::stderr().lock();
+    let mut stderr = standard::errors();
     let _ = stderr.write_all(printable(text).as_bytes());
     let _ = stderr.flush();
 }

@@ -15,6 +15,7 @@ pub mod commission_program;
 pub mod compensate;
 pub mod convert;
 pub mod diff;
+pub mod disk;
 mod dry_run;
 pub mod failure;
 pub mod files;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 use std::env;
-use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
@@ -11,6 +10,7 @@ use post_machine::description::{
 };
 use post_machine::diagnostic::{Diagnostic, nearest};
 
+use crate::disk::{self, File};
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::tools;
@@ -55,7 +55,7 @@ pub fn equip(session: &Session, machine: &mut Machine) -> Result<(), Failure> {
 
 fn take_errors(session: &Session, machine: &mut Machine) -> Result<(), Failure> {
     for table in std::mem::take(&mut machine.error_tables) {
-        let text = match table.file.is_file() {
+        let text = match disk::is_file(&table.file) {
             true => read(session, &table.file),
             false => {
                 let message = format!("{}: there is no such file", table.file.display());
@@ -114,7 +114,7 @@ pub fn parent(
 fn near(name: &str, named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut near: Vec<PathBuf> = Path::new(name)
         .parent()
-        .filter(|folder| folder.is_dir())
+        .filter(|folder| disk::is_dir(folder))
         .map(Path::to_owned)
         .into_iter()
         .collect();
@@ -141,7 +141,7 @@ fn folders(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     }
     let missing: Vec<Diagnostic> = folders
         .iter()
-        .filter(|folder| !folder.is_dir())
+        .filter(|folder| !disk::is_dir(folder))
         .map(|folder| {
             let message = format!("{}: no such folder", folder.display());
             Diagnostic::error("machine", message)
@@ -178,7 +178,7 @@ pub fn is_file(name: &str) -> bool {
 /// The regular file `name`: as seen from here, or, as a file that is extended is named, from the one that extends it.
 fn located(name: &str, folders: &[PathBuf]) -> Option<PathBuf> {
     let beside = folders.iter().map(|folder| folder.join(name));
-    std::iter::once(name.into()).chain(beside).find(|path| path.is_file())
+    std::iter::once(name.into()).chain(beside).find(|path| disk::is_file(path))
 }
 
 fn find(session: &Session, name: &str, folders: &[PathBuf]) -> Result<Source, Missing> {
@@ -191,7 +191,7 @@ fn find_reading(name: &str, folders: &[PathBuf], read: ReadText<'_>) -> Result<S
     }
     for folder in folders {
         let path = folder.join(format!("{name}.toml"));
-        if path.is_file() {
+        if disk::is_file(&path) {
             return read(&path);
         }
     }
@@ -222,7 +222,7 @@ fn check_extended(name: &str, folders: &[PathBuf]) -> Result<(), String> {
         ));
     }
     match located(name, folders) {
-        None if path.exists() => Err(format!("{name} is no regular file")),
+        None if disk::exists(path) => Err(format!("{name} is no regular file")),
         _ => Ok(()),
     }
 }
@@ -307,7 +307,7 @@ pub fn known(beside: &str, named: &[PathBuf]) -> Vec<(String, Option<PathBuf>)> 
 fn names(folders: &[PathBuf]) -> Vec<(String, Option<PathBuf>)> {
     let mut rows: Vec<(String, Option<PathBuf>)> = Vec::new();
     for folder in folders {
-        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let entries = disk::read_dir(folder).into_iter().flatten().flatten();
         let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
         paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
         paths.sort();

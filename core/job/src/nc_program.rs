@@ -1,6 +1,5 @@
 //! An NC program that is read back: the machine that runs it, the words of its control, and what stands in its tables.
 
-use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
 use post_host::Finder;
@@ -12,6 +11,7 @@ use post_readback::lexicon::Lexicon;
 use post_readback::{FedRapids, MOST_FAULTS, Offsets, ProgramRun, turns_the_spindle};
 
 use super::{machine_files, other_language, plugin_finder, unused_options};
+use crate::disk::{self, File};
 use crate::failure::Failure;
 use crate::files::{FileFault, PathArg};
 use crate::session::Session;
@@ -306,7 +306,7 @@ pub fn open_as(
 
 /// What `input` gives, in a file without a name.
 fn copied(input: &mut impl io::Read) -> io::Result<File> {
-    let mut file = tempfile::tempfile()?;
+    let mut file = disk::unnamed()?;
     io::copy(input, &mut file)?;
     file.seek(SeekFrom::Start(0))?;
     Ok(file)

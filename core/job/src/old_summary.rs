@@ -1,11 +1,11 @@
 //! The summary of an old run: the settings that it tells of.
 
-use std::fs::File;
 use std::io::Read as _;
 
 use post_machine::diagnostic::Diagnostic;
 use serde_json::Value;
 
+use crate::disk::{self, File};
 use crate::failure::Failure;
 use crate::files::{FileFault, PathArg};
 use crate::session::Session;
@@ -37,7 +37,7 @@ impl OldSummary {
         };
         let fault = |error| FileFault::read(named, error);
         let name = named.display().to_string();
-        if !path.metadata().map_err(fault)?.is_file() {
+        if !disk::metadata(path).map_err(fault)?.is_file() {
             let message = format!("{name}: no regular file");
             return Err(Diagnostic::error("like", message).into());
         }

@@ -2,12 +2,12 @@
 //! slip would take another plugin in silence.
 
 use std::env;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use post_machine::diagnostic::Diagnostic;
 
+use crate::disk;
 use crate::session::Session;
 
 /// Where further folders are named.
@@ -18,8 +18,8 @@ pub fn named(session: &Session, named: &[PathBuf]) -> Result<Vec<PathBuf>, Vec<D
     let mut folders = Vec::new();
     let mut faults = Vec::new();
     let mut warnings = Vec::new();
-    let variable = env::var_os(VARIABLE).unwrap_or_default();
-    let in_variable = env::split_paths(&variable).filter(|_| !variable.is_empty());
+    let variable = env::var_os(VARIABLE).filter(|folders| !folders.is_empty());
+    let in_variable = variable.iter().flat_map(env::split_paths);
     let command_line = named.iter().map(|folder| ("--plugins", folder.clone()));
     for (source, folder) in command_line.chain(in_variable.map(|folder| (VARIABLE, folder))) {
         let told = format!("{source} {}", folder.display());
@@ -57,7 +57,7 @@ fn fault_of(source: &str, folder: &Path) -> Option<Diagnostic> {
             fault(format!("{told}: a folder in this variable must not be relative")).help(help),
         );
     }
-    let error = fs::read_dir(folder).err()?;
+    let error = disk::read_dir(folder).err()?;
     Some(fault(match error.kind() {
         io::ErrorKind::NotFound => format!("{told}: no such folder"),
         _ => format!("{told}: it cannot be read: {error}"),
@@ -67,7 +67,7 @@ fn fault_of(source: &str, folder: &Path) -> Option<Diagnostic> {
 #[cfg(unix)]
 fn anybody_writes(folder: &Path) -> bool {
     use std::os::unix::fs::PermissionsExt as _;
-    fs::metadata(folder).is_ok_and(|data| data.permissions().mode() & 0o002 != 0)
+    std::fs::metadata(folder).is_ok_and(|data| data.permissions().mode() & 0o002 != 0)
 }
 
 /// Other systems keep lists of rights.

@@ -10,6 +10,7 @@ use crate::working_folder::WorkingFolder;
 #[derive(Debug)]
 pub(crate) struct LoadedLibrary {
     /// Name of the plugin.
+    #[cfg_attr(target_family = "wasm", expect(dead_code, reason = "no library is opened there"))]
     pub(crate) name: String,
     /// The file as the user named it.
     pub(crate) path: PathBuf,

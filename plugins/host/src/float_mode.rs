@@ -3,6 +3,7 @@
 
 #![allow(unsafe_code)]
 
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 use std::arch::asm;
 
 /// The control words of the processor's arithmetic, for this thread.

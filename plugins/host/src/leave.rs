@@ -64,6 +64,7 @@ pub fn leave_at_once(code: u8) -> ! {
     at_once(code)
 }
 
+#[cfg(not(target_family = "wasm"))]
 pub(crate) fn library_opened(library: &'static LoadedLibrary) {
     OPENED.lock().unwrap_or_else(PoisonError::into_inner).push(library);
 }

@@ -13,6 +13,9 @@ mod finder;
 mod float_mode;
 mod judge;
 mod leave;
+#[cfg(not(target_family = "wasm"))]
+mod library;
+#[cfg(not(target_family = "wasm"))]
 mod library_file;
 mod linked_plugin;
 mod model;

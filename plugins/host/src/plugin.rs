@@ -2,32 +2,29 @@
 
 #![allow(unsafe_code)]
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::path::Path;
 
-use post_plugin::raw::PostPlugin;
 use post_plugin::{Linked, OptionSpec};
 
 use crate::call::{Caller, LoadedLibrary};
 use crate::described::{Described, FunctionTable, is_name};
 use crate::judge::judge;
-use crate::leave::library_opened;
-use crate::library_file::LibraryFile;
+#[cfg(not(target_family = "wasm"))]
+use crate::library::open_library;
 use crate::{PluginFault, Reason};
 
 /// A checked plugin. Cheap to clone; may be used from any thread.
 #[derive(Clone, Debug)]
 pub struct Plugin {
     pub(crate) name: String,
-    version: String,
-    about: String,
+    pub(crate) version: String,
+    pub(crate) about: String,
     pub(crate) table: FunctionTable,
     /// Where it is part of this program.
     pub(crate) linked: Option<Linked>,
-    library: Option<&'static LoadedLibrary>,
-    hash: Option<String>,
-    options: &'static [OptionSpec],
+    pub(crate) library: Option<&'static LoadedLibrary>,
+    pub(crate) hash: Option<String>,
+    pub(crate) options: &'static [OptionSpec],
 }
 
 /// What a plugin does.
@@ -37,14 +34,6 @@ pub enum PluginKind {
     Dialect,
     /// Judges the deviation along a move.
     ErrorModel,
-}
-
-/// The hash of each library that was opened, by where it lies. The system hands out a library that is open already
-/// whatever its file has become since.
-static OPENED: Mutex<BTreeMap<PathBuf, String>> = Mutex::new(BTreeMap::new());
-
-fn opened() -> MutexGuard<'static, BTreeMap<PathBuf, String>> {
-    OPENED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Plugin {
@@ -142,52 +131,10 @@ impl From<Described> for Plugin {
     }
 }
 
-/// Opens the library at `path`, which must hold the plugin `name`.
-fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
-    let system = |message: String| Reason::Open { message };
-    let symbol = format!("post_plugin_{name}");
-    let file = LibraryFile::look(path, &symbol).map_err(|message| match message {
-        Some(message) => system(message),
-        None => Reason::NoSymbol { symbol: symbol.clone() },
-    })?;
-    let earlier = opened().get(&file.path).cloned();
-    if earlier.is_some_and(|earlier| earlier != file.hash) {
-        return Err(system("it is open already, and its file was changed since".to_owned()));
-    }
-    let loaded: &'static LoadedLibrary =
-        Box::leak(Box::new(LoadedLibrary { name: name.to_owned(), path: path.to_owned() }));
-    library_opened(loaded);
-    let caller = Caller::new(Some(loaded));
-    // SAFETY: the library's initialisers run; the user named this file as one to be run.
-    let library = caller.call(|| unsafe { libloading::Library::new(file.path.as_os_str()) });
-    let library = library.map_err(|error| system(error.to_string()))?;
-    // SAFETY: only the symbol's address is taken here; what it leads to is judged below.
-    let found = unsafe { library.get::<*const PostPlugin>(symbol.as_bytes()) };
-    let found = found.ok().map(|found| *found);
-    // A library is never closed again: its threads and thread-local destructors may still need its
-    // code, so there is no sound way to unload it. What it exports therefore lives for ever.
-    std::mem::forget(library);
-    let Some(exported) = found else {
-        return Err(Reason::NoSymbol { symbol });
-    };
-    opened().insert(file.path.clone(), file.hash.clone());
-    if !file.is_unchanged() {
-        return Err(system("its file was changed while it was opened".to_owned()));
-    }
-    if exported.is_null() || !exported.is_aligned() {
-        return Err(Reason::NotAPlugin);
-    }
-    // SAFETY: not null, aligned and never unloaded. That the plugin keeps the contract is its
-    // author's promise, made by the magic number.
-    let described = unsafe { judge(exported, &caller) }?;
-    if described.name != name {
-        return Err(Reason::Nonsense { message: format!("it calls itself `{}`", described.name) });
-    }
-    // SAFETY: judged above.
-    if let Some(loaded) = unsafe { (*exported).loaded } {
-        caller.call(|| unsafe { loaded() });
-    }
-    Ok(Plugin { library: Some(loaded), hash: Some(file.hash), ..described.into() })
+/// There are no libraries here.
+#[cfg(target_family = "wasm")]
+fn open_library(_: &str, _: &Path) -> Result<Plugin, Reason> {
+    Err(Reason::Open { message: "libraries cannot be opened here".to_owned() })
 }
 
 impl PluginKind {

@@ -15,6 +15,7 @@ use post_cli::terminal::{self, JobsProgress};
 use post_job::batch::{
     self, Grid, JobLine, JobStudy, Journal, MapAxes, Shard, StudyTable, ValueText,
 };
+use post_job::disk;
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, FileFault, PathArg, Role};
 use post_job::job_file;
@@ -245,7 +246,7 @@ fn jobs(
             seeds.push(JobLine::of_file(file.to_string_lossy().into_owned()));
             continue;
         }
-        let text = std::fs::read_to_string(file).map_err(|error| FileFault::read(file, error))?;
+        let text = disk::read_to_string(file).map_err(|error| FileFault::read(file, error))?;
         session.read_files().note("the list of jobs", file);
         seeds.extend(JobLine::read(&file.display().to_string(), &text)?);
     }
@@ -278,7 +279,7 @@ fn jobs(
 fn journal(session: &Session, arguments: &BatchArguments) -> Result<Option<Journal>, Failure> {
     let beside = || {
         let path = arguments.output.absolute()?;
-        let is_file = !path.exists() || path.is_file();
+        let is_file = !disk::exists(path) || disk::is_file(path);
         let mut name = path.as_os_str().to_owned();
         name.push(".journal");
         is_file.then(|| PathBuf::from(name))

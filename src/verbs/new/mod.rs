@@ -3,7 +3,6 @@
 mod questions;
 mod template;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -13,6 +12,7 @@ use post_machine::diagnostic::Diagnostic;
 use crate::flag_words::{TcpWord, UnitsWord};
 use post_cli::arguments::flag_values::{self, finite, word};
 use post_cli::terminal;
+use post_job::disk;
 use post_job::failure::Failure;
 use post_job::files::{self, Role};
 use post_job::session::Session;
@@ -180,7 +180,7 @@ pub fn run(session: &Session, arguments: &NewArguments) -> Result<(), Failure> {
 
 /// A file that is there stays, unless the user says otherwise.
 fn refuse_existing(arguments: &NewArguments, path: &Path) -> Result<(), Failure> {
-    if arguments.force || !path.exists() {
+    if arguments.force || !disk::exists(path) {
         return Ok(());
     }
     let message = format!("{} is there already", path.display());
@@ -206,7 +206,7 @@ fn file(name: &Path) -> Result<PathBuf, Failure> {
         }
     }
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty())
-        && !fs::metadata(folder).is_ok_and(|folder| folder.is_dir())
+        && !disk::is_dir(folder)
     {
         let message = format!("there is no folder {}", folder.display());
         return Err(Diagnostic::error("new", message).into());

@@ -1,7 +1,6 @@
 //! The texts that jobs read: CL files and machine files, each read once, by the name that the user gave.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -10,6 +9,7 @@ use post_machine::description::{Machine, Setting, Source, load};
 use post_machine::diagnostic::{Diagnostic, FurtherFile};
 use serde::{Deserialize, Serialize};
 
+use crate::disk;
 use crate::failure::Failure;
 use crate::files::{FileFault, JoinedFiles, PathArg};
 use crate::machine_files;
@@ -188,10 +188,10 @@ impl Inputs {
                 .help("give a file, not standard input")
                 .into());
         };
-        if path.is_dir() {
+        if disk::is_dir(path) {
             return Err(FileFault::ReadFolder(named.to_owned()).into());
         }
-        let bytes = fs::read(path).map_err(|error| FileFault::read(named, error))?;
+        let bytes = disk::read(path).map_err(|error| FileFault::read(named, error))?;
         session.read_files().note("the CL file", path);
         let text = ClText::new(bytes);
         read.insert(file.to_owned(), Arc::downgrade(&text));

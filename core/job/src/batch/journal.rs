@@ -1,12 +1,12 @@
 //! Outcomes in a file that only grows, a line of JSON each: a run that was killed goes on where it was.
 
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::outcome::{FAILED, JobOutcome};
+use crate::disk::{File, OpenOptions};
 use crate::files::FileFault;
 
 /// Outcomes by their keys, on the disk as soon as they are there.

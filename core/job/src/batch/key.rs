@@ -7,6 +7,7 @@ use super::JobStudy;
 use super::inputs::{ClText, MachineTexts};
 use super::job_line::JobLine;
 use crate::clearance;
+use crate::disk;
 use crate::plugin_finder;
 
 /// Changes when outcomes of old mean something else.
@@ -46,7 +47,7 @@ pub fn key(
     if study.options.clearance {
         for file in clearance::files(machine) {
             // One that cannot be read is told when the job is done.
-            let bytes = std::fs::read(file).unwrap_or_default();
+            let bytes = disk::read(file).unwrap_or_default();
             add(blake3::hash(&bytes).as_bytes());
         }
     }

@@ -1,6 +1,5 @@
 //! Bodies of a machine and of its tools, as its file and those that it names have them.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
@@ -14,6 +13,8 @@ use post_machine::description::{
 };
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_report::solid;
+
+use crate::disk::{self, File};
 
 /// Triangles that are read of one file.
 const MOST_TRIANGLES: usize = 2_000_000;
@@ -242,7 +243,7 @@ fn read_mesh(
     let mut refuse = |why: String, help: &str| {
         findings.push(unusable(name, (&format!("{shown}: {why}"), help), place));
     };
-    if !path.is_file() {
+    if !disk::is_file(path) {
         let help = "the path is that from the machine file";
         refuse("there is no such regular file".to_owned(), help);
         return None;

@@ -1,6 +1,5 @@
 //! A text in the making: a temporary file beside the target that takes its name at the end, or a stream.
 
-use std::fs::{self, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -14,6 +13,7 @@ use super::outcome::TextOutcome;
 use super::target::{Place, Role, Target, refuse_losses};
 use super::temporary::Temporary;
 use super::{FileFault, PathArg, rights, standard};
+use crate::disk::{self, File, OpenOptions, TryLockError};
 use crate::session::Session;
 
 /// A text in the making. Dropped before [`AtomicFile::finish`], it leaves nothing behind, nor if the command is
@@ -47,7 +47,7 @@ impl AtomicFile {
             Place::File(path) => Temporary::shared(folder(path)),
             // Nothing may be seen before all is good, and memory must not grow: it waits in a file.
             Place::Standard | Place::Stream(_) => {
-                let waiting = std::env::temp_dir();
+                let waiting = disk::temp_dir();
                 let made = Temporary::private(&waiting);
                 let made = made.map_err(|error| FileFault::NoWaiting {
                     name: target.name.clone(),
@@ -91,8 +91,8 @@ impl AtomicFile {
     ///
     /// # Errors
     /// It cannot be written, or not be read.
-    pub fn reread(&mut self) -> Result<fs::File, FileFault> {
-        let again = || -> io::Result<fs::File> {
+    pub fn reread(&mut self) -> Result<File, FileFault> {
+        let again = || -> io::Result<File> {
             self.file.flush()?;
             let mut file = self.file.get_ref().as_file()?.try_clone()?;
             file.seek(SeekFrom::Start(0))?;
@@ -171,7 +171,7 @@ fn name_all(
     folders.sort();
     folders.dedup();
     // Of two runs that write the same files, one has both. Not every system can open or lock a folder.
-    let folders: Vec<fs::File> = folders.iter().flat_map(fs::File::open).collect();
+    let folders: Vec<File> = folders.iter().flat_map(File::open).collect();
     if files.len() > 1 {
         folders.iter().for_each(lock);
     }
@@ -195,7 +195,7 @@ fn name_all(
 }
 
 /// Waits until no other run gives names in a folder, but not for ever: whoever else holds it may have other reasons.
-fn lock(folder: &fs::File) {
+fn lock(folder: &File) {
     for _ in 0..100 {
         if !matches!(folder.try_lock(), Err(TryLockError::WouldBlock)) {
             return;

@@ -1,6 +1,5 @@
 //! The CL file: a file, a pipe, or standard input.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::sync::Arc;
 
@@ -9,6 +8,7 @@ use post_machine::diagnostic::{FurtherFile, SourceFiles};
 use super::file_id::FileId;
 use super::seen_files::SeenFiles;
 use super::{FileFault, PathArg};
+use crate::disk::File;
 use crate::session::Session;
 
 /// A CL file that is read, and what is known of it.

@@ -10,6 +10,7 @@ use super::joined::JoinedFiles;
 use super::seen_files::SeenFiles;
 use super::temporary::Temporary;
 use super::{ClInput, FileFault, PathArg};
+use crate::disk;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::settings::JobSettings;
@@ -94,7 +95,7 @@ impl ClSource {
         if input.length.is_some() {
             return Ok(source);
         }
-        let folder = std::env::temp_dir();
+        let folder = disk::temp_dir();
         let fault = |error: io::Error| FileFault::NoWaiting {
             name: input.name.clone(),
             folder: folder.clone(),
@@ -116,7 +117,7 @@ impl ClSource {
         name: String,
         make: impl FnOnce(&mut dyn FnMut(&[u8]) -> Result<(), FileFault>) -> Result<T, FileFault>,
     ) -> Result<(Self, T), FileFault> {
-        let folder = std::env::temp_dir();
+        let folder = disk::temp_dir();
         let fault = |error: io::Error| FileFault::NoWaiting {
             name: name.clone(),
             folder: folder.clone(),

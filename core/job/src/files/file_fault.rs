@@ -9,6 +9,8 @@ use post_machine::diagnostic::Diagnostic;
 use super::file_id::folder;
 use super::{PathArg, Role};
 
+use crate::disk;
+
 /// Why a file cannot be read or written.
 #[derive(Debug)]
 pub enum FileFault {
@@ -112,7 +114,7 @@ impl FileFault {
         let (Some(path), Some(named)) = (target.absolute(), target.path()) else {
             return Self::write_named("standard output", error);
         };
-        if folder(path).is_dir() {
+        if disk::is_dir(folder(path)) {
             return Self::write_named(&named.display().to_string(), error);
         }
         Self::NoFolder { path: named.to_owned(), folder: folder(named).to_owned() }

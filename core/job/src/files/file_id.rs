@@ -1,9 +1,10 @@
 //! Which file a path leads to: two names of one file are equal.
 
 use std::ffi::OsString;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+
+use crate::disk;
 
 /// How the system tells files apart: device and number on it.
 #[cfg(unix)]
@@ -64,7 +65,7 @@ impl FileId {
 #[cfg(unix)]
 fn of_stream(stream: impl std::os::fd::AsFd, files_alone: bool) -> Option<FileId> {
     use std::os::unix::fs::MetadataExt;
-    let file = fs::File::from(stream.as_fd().try_clone_to_owned().ok()?);
+    let file = std::fs::File::from(stream.as_fd().try_clone_to_owned().ok()?);
     let metadata = file.metadata().ok()?;
     let id = FileId::There((metadata.dev(), metadata.ino()));
     (metadata.is_file() || !files_alone).then_some(id)
@@ -73,12 +74,12 @@ fn of_stream(stream: impl std::os::fd::AsFd, files_alone: bool) -> Option<FileId
 #[cfg(unix)]
 fn node(path: &Path) -> io::Result<Node> {
     use std::os::unix::fs::MetadataExt;
-    fs::metadata(path).map(|metadata| (metadata.dev(), metadata.ino()))
+    std::fs::metadata(path).map(|metadata| (metadata.dev(), metadata.ino()))
 }
 
 #[cfg(not(unix))]
 fn node(path: &Path) -> io::Result<Node> {
-    Ok(path.canonicalize()?.to_string_lossy().to_lowercase())
+    Ok(disk::canonicalize(path)?.to_string_lossy().to_lowercase())
 }
 
 /// More links than this behind one another lead nowhere, as on most systems.
@@ -91,20 +92,20 @@ const MOST_LINKS: usize = 40;
 pub fn followed(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {
-        match fs::symlink_metadata(&path) {
+        match disk::symlink_metadata(&path) {
             Ok(metadata) if metadata.is_symlink() => {
-                path = folder(&path).join(fs::read_link(&path)?);
+                path = folder(&path).join(disk::read_link(&path)?);
             }
-            Ok(_) => return path.canonicalize(),
+            Ok(_) => return disk::canonicalize(&path),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 let name = path.file_name().ok_or(io::ErrorKind::InvalidInput)?;
-                return Ok(folder(&path).canonicalize()?.join(name));
+                return Ok(disk::canonicalize(folder(&path))?.join(name));
             }
             Err(error) => return Err(error),
         }
     }
     // The system says it in its own words.
-    path.canonicalize()
+    disk::canonicalize(&path)
 }
 
 /// The folder that a path lies in.

@@ -3,6 +3,7 @@
 //! Several texts of a run take their names together or not at all. Whatever reads a file of the user's notes it in
 //! [`ReadFiles`] of its session; whatever is written goes through [`AtomicFile`].
 
+#[cfg(not(target_family = "wasm"))]
 mod abandoned;
 mod atomic_file;
 pub mod chart;
@@ -12,6 +13,10 @@ mod file_fault;
 mod file_id;
 mod joined;
 mod json_rows;
+#[cfg(not(target_family = "wasm"))]
+mod naming;
+#[cfg(target_family = "wasm")]
+#[path = "memory/naming.rs"]
 mod naming;
 mod outcome;
 mod own_folder;
@@ -28,11 +33,14 @@ pub mod standard;
 pub mod svg;
 pub mod table_cells;
 mod target;
+#[cfg(not(target_family = "wasm"))]
+mod temporary;
+#[cfg(target_family = "wasm")]
+#[path = "memory/temporary.rs"]
 mod temporary;
 mod watched;
 
-use std::fs;
-
+use crate::disk;
 use crate::session::Session;
 use target::{Target, refuse_losses};
 
@@ -95,7 +103,7 @@ pub fn remove(session: &Session, role: Role, named: &PathArg) -> Result<(), File
     refuse_losses(session, &[&target])?;
     match named.absolute() {
         Some(path) if target.replaces => {
-            fs::remove_file(path).map_err(|error| FileFault::write(named, error))
+            disk::remove_file(path).map_err(|error| FileFault::write(named, error))
         }
         _ => Ok(()),
     }

@@ -1,12 +1,12 @@
 //! A folder of files that a verb writes together, and writes again.
 
-use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use post_machine::diagnostic::Diagnostic;
 
 use super::{AtomicFile, FileFault, PathArg, Role};
+use crate::disk;
 use crate::session::Session;
 
 /// The file by which a folder is known to be an earlier run's.
@@ -57,18 +57,18 @@ impl<'a> OwnFolder<'a> {
         let (Some(place), Some(named)) = (self.folder.absolute(), self.folder.path()) else {
             return refuse("standard output is no folder".to_owned());
         };
-        if place.exists() && !place.is_dir() {
+        if disk::exists(place) && !disk::is_dir(place) {
             return refuse(format!("{} is no folder", named.display()));
         }
         let mut begin = Vec::new();
-        let file = fs::File::open(place.join(mark.name));
+        let file = disk::File::open(place.join(mark.name));
         let read =
             file.and_then(|file| file.take(mark.begins.len() as u64).read_to_end(&mut begin));
         if read.is_ok() && begin == mark.begins.as_bytes() {
             return Ok(());
         }
         let mut names = self.names.iter();
-        match names.find(|name| place.join(name).exists()) {
+        match names.find(|name| disk::exists(&place.join(name))) {
             None => Ok(()),
             Some(name) => refuse(format!(
                 "the {what} would overwrite {}, which is of no {what}",
@@ -89,7 +89,7 @@ impl<'a> OwnFolder<'a> {
         texts: &mut Vec<AtomicFile>,
     ) -> Result<(), FileFault> {
         let place = self.folder.absolute().unwrap_or(Path::new("."));
-        fs::create_dir_all(place).map_err(|error| FileFault::write(self.folder, error))?;
+        disk::create_dir_all(place).map_err(|error| FileFault::write(self.folder, error))?;
         let paths: Vec<PathArg> = files.iter().map(|(name, _)| self.path(name)).collect();
         let targets: Vec<(Role, &PathArg)> = paths.iter().map(|path| (self.role, path)).collect();
         let mut made = AtomicFile::create(self.session, &targets)?;

@@ -1,8 +1,9 @@
 //! Who may read and write what is written: a file that replaces another takes over its owner, its group and its rights.
 
-use std::fs::File;
 use std::io;
 use std::path::Path;
+
+use crate::disk::File;
 
 /// Gives `file` the owner, the group, the rights and the access list of the file at `target`, if there is one. The bits
 /// that let a program run as somebody else (setuid, setgid) are not taken over.

@@ -7,6 +7,8 @@ use post_posting::TextSink;
 use super::FileFault;
 use super::temporary::Temporary;
 
+use crate::disk;
+
 /// A text in the folder of temporary files.
 pub struct Scratch {
     name: &'static str,
@@ -19,7 +21,7 @@ impl Scratch {
     /// # Errors
     /// There is no place for it.
     pub fn new(name: &'static str) -> Result<Self, FileFault> {
-        let text = Temporary::private(&std::env::temp_dir()).map_err(|error| fault(name, error))?;
+        let text = Temporary::private(&disk::temp_dir()).map_err(|error| fault(name, error))?;
         Ok(Self { name, text: BufWriter::new(text) })
     }
 
@@ -54,7 +56,7 @@ impl Write for Scratch {
 fn fault(name: &str, error: io::Error) -> FileFault {
     FileFault::NoWaiting {
         name: name.to_owned(),
-        folder: std::env::temp_dir(),
+        folder: disk::temp_dir(),
         error: error.kind().into(),
     }
 }

@@ -1,11 +1,12 @@
 //! CL files that a run opens more than once: each time they are what they were.
 
-use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
 use super::FileFault;
+
+use crate::disk::{self, Metadata};
 
 /// What of a file is another where another one has its name, or it was written to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +71,7 @@ impl SeenFiles {
     pub fn refuse_written(&self) -> Result<(), FileFault> {
         let seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         for SeenFile { named, path, stamp } in seen.iter() {
-            let now = fs::metadata(path).map(|metadata| FileStamp::of(&metadata));
+            let now = disk::metadata(path).map(|metadata| FileStamp::of(&metadata));
             if now.is_ok_and(|now| now.node == stamp.node && now != *stamp) {
                 return Err(FileFault::Changed(named.clone()));
             }

@@ -31,8 +31,36 @@ pub fn open() -> io::Result<Box<dyn Write + Send>> {
     Ok(Box::new(own))
 }
 
+/// Where it stands on a disk in memory, to be fetched from there.
+pub const OUTPUT: &str = "/dev/stdout";
+
+/// Where standard error stands there.
+pub const ERRORS: &str = "/dev/stderr";
+
 /// Opens it.
-#[cfg(not(unix))]
+#[cfg(target_family = "wasm")]
+pub fn open() -> io::Result<Box<dyn Write + Send>> {
+    let file = crate::disk::OpenOptions::new().create(true).append(true).open(OUTPUT)?;
+    Ok(Box::new(file))
+}
+
+/// Opens standard error.
+#[cfg(target_family = "wasm")]
+pub fn errors() -> Box<dyn Write> {
+    match crate::disk::OpenOptions::new().create(true).append(true).open(ERRORS) {
+        Ok(file) => Box::new(file),
+        Err(_) => Box::new(io::sink()),
+    }
+}
+
+/// Opens standard error.
+#[cfg(not(target_family = "wasm"))]
+pub fn errors() -> Box<dyn Write> {
+    Box::new(io::stderr().lock())
+}
+
+/// Opens it.
+#[cfg(not(any(unix, target_family = "wasm")))]
 pub fn open() -> io::Result<Box<dyn Write + Send>> {
     match kept() {
         Some(file) => Ok(Box::new(file.try_clone()?)),

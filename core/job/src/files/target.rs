@@ -1,11 +1,11 @@
 //! Where a text goes, and that no file of the user's is lost by it.
 
-use std::fs::{self, Metadata, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
 use super::file_id::{FileId, followed};
 use super::{FileFault, PathArg, standard};
+use crate::disk::{self, Metadata, OpenOptions};
 use crate::session::Session;
 
 /// What a text is to the user.
@@ -73,7 +73,7 @@ impl Target {
             name: named
                 .path()
                 .map_or_else(|| "standard output".to_owned(), |path| path.display().to_string()),
-            replaces: matches!(&place, Place::File(path) if path.exists()),
+            replaces: matches!(&place, Place::File(path) if disk::exists(path)),
             place,
         })
     }
@@ -126,7 +126,7 @@ fn place(role: Role, named: &PathArg) -> Result<Place, FileFault> {
         return Ok(Place::Standard);
     }
     let fault = |error| FileFault::write(named, error);
-    match fs::metadata(path) {
+    match disk::metadata(path) {
         Ok(found) if found.is_dir() => Err(FileFault::WriteFolder(shown.to_owned())),
         Ok(found) if is_disk(&found) => Err(FileFault::WriteDisk(shown.to_owned())),
         Ok(found) if is_standard_output(path, &found) => {
@@ -140,7 +140,7 @@ fn place(role: Role, named: &PathArg) -> Result<Place, FileFault> {
         Ok(found) if found.is_file() => {
             // A file that is protected against writing is not replaced either.
             OpenOptions::new().write(true).open(path).map_err(fault)?;
-            Ok(Place::File(path.canonicalize().map_err(fault)?))
+            Ok(Place::File(disk::canonicalize(path).map_err(fault)?))
         }
         Ok(_) => Ok(Place::Stream(path.to_owned())),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {

@@ -1,6 +1,5 @@
 //! What names a job file in the head of a program, and how it is found by that.
 
-use std::fs::{self, File};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -8,6 +7,7 @@ use post_grammar::text::as_remark;
 use post_machine::diagnostic::Diagnostic;
 
 use super::{is_job_file, paths, reading};
+use crate::disk::{self, File};
 use crate::failure::Failure;
 use crate::files::PathArg;
 use crate::session::Session;
@@ -81,7 +81,7 @@ pub fn job_of_program(session: &Session, program: &PathArg) -> Result<Option<Pat
         return Ok(None);
     };
     let beside = path.parent().map(Path::to_owned);
-    let whole = fs::canonicalize(paths::folder(path)).unwrap_or_default();
+    let whole = disk::canonicalize(paths::folder(path)).unwrap_or_default();
     let above = whole.ancestors().skip(1).take(ABOVE).map(|folder| Some(folder.to_owned()));
     for folder in [beside, None].into_iter().chain(above) {
         let found = in_folder(session, folder.as_deref(), &hash);
@@ -100,7 +100,7 @@ pub fn job_of_program(session: &Session, program: &PathArg) -> Result<Option<Pat
 /// The job file of a folder, none: the working directory, that has this hash.
 fn in_folder(session: &Session, folder: Option<&Path>, hash: &str) -> Option<PathBuf> {
     let listed = folder.filter(|folder| !folder.as_os_str().is_empty());
-    let entries = fs::read_dir(listed.unwrap_or(Path::new("."))).into_iter().flatten().flatten();
+    let entries = disk::read_dir(listed.unwrap_or(Path::new("."))).into_iter().flatten().flatten();
     let mut names: Vec<_> = entries.map(|entry| entry.file_name()).collect();
     names.retain(|name| is_job_file(Path::new(name)));
     names.sort();
@@ -129,7 +129,7 @@ pub fn is_marked(program: &PathArg) -> bool {
 
 /// The beginning of a program; none of what is no regular file.
 fn head(path: &Path) -> Option<String> {
-    if !path.metadata().ok()?.is_file() {
+    if !disk::metadata(path).ok()?.is_file() {
         return None;
     }
     let mut bytes = Vec::new();

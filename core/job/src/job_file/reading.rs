@@ -1,6 +1,5 @@
 //! A job file is read: its keys, their values, and what is wrong with them, each with its line.
 
-use std::fs::File;
 use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -14,6 +13,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::job_keys::BESIDE;
 use super::{JobFile, JobKeys, JobMark, JobProgram, MOST_PROGRAMS, ToldSetting, paths};
+use crate::disk::{self, File};
 use crate::failure::Failure;
 use crate::files::FileFault;
 use crate::machine_files;
@@ -43,7 +43,7 @@ pub fn read(session: &Session, path: &Path) -> Result<JobFile, Failure> {
 /// The text of a job file: a regular file, of no more than a machine file may have.
 pub(super) fn text_of(session: &Session, path: &Path) -> Result<String, Failure> {
     let fault = |error| FileFault::read(path, error);
-    let metadata = path.metadata().map_err(fault)?;
+    let metadata = disk::metadata(path).map_err(fault)?;
     let refused = |why: String| Diagnostic::error("job-file", format!("{}: {why}", path.display()));
     if !metadata.is_file() {
         return Err(refused("no regular file".to_owned()).into());

@@ -8,6 +8,7 @@ use serde_json::json;
 use toml::de::{DeTable, DeValue};
 
 use super::{ENDING, JobKeys, is_job_file, paths};
+use crate::disk;
 use crate::files::PathArg;
 use crate::machine_files;
 use crate::settings::{About, SettingForm, SettingValue};
@@ -38,7 +39,8 @@ pub fn text(job: &SavedJob<'_>, target: &PathArg) -> Result<String, Box<Diagnost
         return Err(Diagnostic::error("job-file", message).help("name the CL file").boxed());
     };
     let mut text = String::new();
-    let machine = match machine_files::is_file(job.machine) && Path::new(job.machine).exists() {
+    let machine = match machine_files::is_file(job.machine) && disk::exists(Path::new(job.machine))
+    {
         true => relative(Path::new(job.machine), &folder),
         false => job.machine.to_owned(),
     };

@@ -14,6 +14,7 @@ use post_report::text::TextWriter;
 
 use super::solids;
 use crate::clearance::{ClearanceSummary, StockLeft};
+use crate::disk;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, FileFault, Scratch};
 use crate::session::Session;
@@ -214,7 +215,7 @@ impl Parts {
 
 /// What is packed cannot be kept.
 pub fn fault(error: io::Error) -> Failure {
-    FileFault::NoWaiting { name: NAME.to_owned(), folder: std::env::temp_dir(), error }.into()
+    FileFault::NoWaiting { name: NAME.to_owned(), folder: disk::temp_dir(), error }.into()
 }
 
 /// What "certified" leaves out; of bodies what has none, where clearance was `proven`.

@@ -1,7 +1,6 @@
 //! Shapes of the machine's bodies, fixtures and stock among them, as the page draws them.
 
 use std::borrow::Cow;
-use std::fs::File;
 use std::io::{BufReader, Cursor};
 
 use nalgebra::Vector3;
@@ -15,6 +14,7 @@ use post_report::table::{TableColumn, TableWriter};
 use super::given_bodies;
 use super::parts::{Parts, fault};
 use crate::clearance::{self, StockLeft};
+use crate::disk::{self, File};
 use crate::failure::Failure;
 
 /// A body that is drawn as a machine file describes it.
@@ -283,11 +283,11 @@ fn load(given: &DrawnBody<'_>, most: usize) -> Result<DrawnSolid, Box<Diagnostic
             .boxed()
     };
     let named = "its path is that from the machine file, with --set that from here";
-    if !path.exists() {
+    if !disk::exists(path) {
         return Err(fault(&"there is no such file", named));
     }
     // A machine file may be a stranger's: a pipe could keep the command waiting, a device has no end.
-    if !path.is_file() {
+    if !disk::is_file(path) {
         return Err(fault(&"it is no regular file", named));
     }
     let file = File::open(path).map_err(|error| fault(&error, "check its rights"))?;

@@ -266,6 +266,10 @@ settings! {
 impl ThreadSettings {
     /// Threads that work at most.
     pub fn most(&self) -> NonZeroUsize {
+        if cfg!(target_family = "wasm") {
+            // None can be started there.
+            return NonZeroUsize::MIN;
+        }
         self.jobs.or_else(|| thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN)
     }
 }

@@ -18,13 +18,13 @@ mod request;
 mod siemens;
 mod written;
 
-use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::Path;
 
 use post_machine::description::{Machine, OutputUnits, ToolData, ToolTable};
 use post_machine::diagnostic::{Diagnostic, Severity, Short};
 
+use crate::disk::{self, File};
 use crate::failure::Failure;
 use crate::files::FileFault;
 use crate::session::Session;
@@ -100,7 +100,7 @@ fn text(session: &Session, table: &ToolTable) -> Result<String, Failure> {
 
 /// The bytes of a regular file: a pipe could keep the command waiting, a device has no end.
 fn bytes(session: &Session, path: &Path) -> io::Result<Vec<u8>> {
-    if !path.metadata()?.is_file() {
+    if !disk::metadata(path)?.is_file() {
         return Err(io::Error::other("no regular file"));
     }
     session.read_files().note("the file of tools", path);
@@ -113,7 +113,7 @@ fn bytes(session: &Session, path: &Path) -> io::Result<Vec<u8>> {
 fn bit(session: &Session, library: &Path, named: &Path) -> io::Result<String> {
     let folder = library.parent().unwrap_or(Path::new(""));
     let beside = folder.join(named);
-    let path = match beside.is_file() {
+    let path = match disk::is_file(&beside) {
         true => beside,
         false => folder.join("..").join("Bit").join(named),
     };

@@ -84,7 +84,7 @@ export class Browser {
   static async start() {
     const browser = new Browser();
     browser.folder = mkdtempSync(path.join(os.tmpdir(), "post-browser-"));
-    const flags = ["--headless", "--no-sandbox", "--remote-debugging-pipe", `--user-data-dir=${browser.folder}`];
+    const flags = ["--headless", "--no-sandbox", "--remote-debugging-pipe", "--window-size=1440,900", `--user-data-dir=${browser.folder}`];
     browser.child = spawn(PROGRAM, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
     const [, , , to, from] = browser.child.stdio;
     browser.to = to;
@@ -144,6 +144,22 @@ export class Browser {
     return result.value;
   }
 
+  /** Whether the report that the page frames is ready: its own script has run. */
+  async inFrame(seconds = 30) {
+    for (let turn = 0; turn < seconds * 20; turn++) {
+      const frames = this.events.filter(({ params }) => params.targetInfo?.type === "iframe" && params.sessionId);
+      for (const { params } of frames) {
+        const parameters = { expression: "document.documentElement?.dataset.ready ?? null", returnByValue: true };
+        const seen = await this.send("Runtime.evaluate", parameters, params.sessionId).catch(() => null);
+        if (typeof seen?.result?.value === "string") {
+          return "yes";
+        }
+      }
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+    return "no";
+  }
+
   /** Waits until an expression of the page holds. */
   async until(expression, seconds = 60) {
     for (let turn = 0; turn < seconds * 20; turn++) {
@@ -157,7 +173,7 @@ export class Browser {
 
   async open(file) {
     await this.send("Page.navigate", { url: `file://${file}` });
-    await this.until("document.documentElement.dataset.ready");
+    await this.until("document.documentElement?.dataset.ready");
   }
 
   /** Addresses that page, workers and frames have asked for. */

@@ -23,11 +23,6 @@ pub struct WrapMode {
 }
 
 impl WrapMode {
-    /// The word of the turning axis, whose letter is `own` outside, is another one in it.
-    pub fn changes_word(&self, own: &str) -> bool {
-        self.lengths || self.letter != own
-    }
-
     /// The way along which F counts between axis values, mm: all other axes are linear.
     pub fn way(&self, from: &Joints, to: &Joints) -> f64 {
         let along = |place: usize| match place == self.turning {

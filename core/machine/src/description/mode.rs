@@ -126,15 +126,7 @@ impl Builder<'_> {
             };
             in_mode(machine, axes, said.radius, mode)
         });
-        match made {
-            Ok(machine) => {
-                Some(Head { name: FACE_MODE.to_owned(), word: None, offset: None, machine })
-            }
-            Err(Lack(message, help)) => {
-                self.fault("machine-mode", span, message, help);
-                None
-            }
-        }
+        self.mode(FACE_MODE, span, made)
     }
 
     /// The machine in cylinder interpolation, to be put among its heads.
@@ -169,10 +161,18 @@ impl Builder<'_> {
             let mode = WrapMode { on, off, letter, lengths: said.lengths, radius, turning };
             Ok(on_mantle(machine, mode))
         });
+        self.mode(WRAP_MODE, span, made)
+    }
+
+    /// The machine in a mode, as one of its heads, or what it lacks for that.
+    fn mode(
+        &mut self,
+        name: &str,
+        span: Range<usize>,
+        made: Result<Machine, Lack>,
+    ) -> Option<Head> {
         match made {
-            Ok(machine) => {
-                Some(Head { name: WRAP_MODE.to_owned(), word: None, offset: None, machine })
-            }
+            Ok(machine) => Some(Head { name: name.to_owned(), word: None, offset: None, machine }),
             Err(Lack(message, help)) => {
                 self.fault("machine-mode", span, message, help);
                 None

@@ -1,4 +1,5 @@
-//! Polar interpolation of the control around the moves of an operation: how the tool comes to it, and what the real axes do.
+//! Polar and cylinder interpolation of the control around the moves of an operation: how the tool comes to them, how they begin
+//! and end, and what the real axes do.
 
 use post_machine::axis_words::{self, AxisWords, WordValues};
 use post_machine::description::Machine;
@@ -29,6 +30,29 @@ struct FaceWords {
     down: f64,
 }
 
+/// How a mode is told of.
+struct ModeWords<'a> {
+    /// Lines that begin it, and lines that end it.
+    lines: [&'a [String]; 2],
+    /// The letter of the turning axis' word in it.
+    letter: &'a str,
+    /// That word is a length.
+    length: bool,
+    /// Place in the chain of the axis that turns the part.
+    turning: usize,
+}
+
+impl<'a> ModeWords<'a> {
+    /// Those of a machine that is in a mode.
+    fn of(machine: &'a Machine) -> Option<Self> {
+        if let Some(FaceMode { on, off, letter, turning, .. }) = &machine.face {
+            return Some(Self { lines: [on, off], letter, length: true, turning: *turning });
+        }
+        let WrapMode { on, off, letter, lengths, turning, .. } = machine.wrap.as_ref()?;
+        Some(Self { lines: [on, off], letter, length: *lengths, turning: *turning })
+    }
+}
+
 /// What the mode is told by.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FaceState {
@@ -49,24 +73,66 @@ impl<'a> EmitStage<'a> {
 
     /// The mode ends, ahead of a retract, if it is in force: the axes are themselves again.
     pub(super) fn end_face(&mut self, line: u64) {
-        if let Some(mode) = self.machine.wrap.as_ref().filter(|_| self.face.on) {
-            self.face.on = false;
-            return self.end_wrap(line, mode);
-        }
-        let Some(mode) = self.machine.face.as_ref().filter(|_| self.face.on) else {
+        let Some(mode) = ModeWords::of(self.machine).filter(|_| self.face.on) else {
             return;
         };
         self.face.on = false;
-        self.last = self.face.stands;
-        for text in &mode.off {
+        if self.machine.face.is_some() {
+            self.last = self.face.stands;
+        }
+        let letter = &self.base.axes[mode.turning].name;
+        self.tell_mode(line, &mode, mode.lines[1], (false, letter));
+    }
+
+    /// The lines that begin or end a mode, and what the turning axis' word is from here on: whether a length, and its letter.
+    fn tell_mode(
+        &mut self,
+        line: u64,
+        mode: &ModeWords<'_>,
+        lines: &[String],
+        (coordinate, letter): (bool, &str),
+    ) {
+        for text in lines {
             self.writer.push(line, Event::Word { text });
         }
-        let Some(words) = self.face_words(mode) else {
+        let own = &self.base.axes[mode.turning].name;
+        let word = self.word_of(mode.turning);
+        if let Some(word) = word.filter(|_| mode.length || mode.letter != own) {
+            let word = word as u32;
+            self.writer.push(line, Event::WordLetter { word, coordinate, letter });
+        }
+    }
+
+    /// The way to the first position of an operation in a mode: the part is turned to zero, the tool comes to `words` far from
+    /// the part, and the mode begins. It is the machine itself that comes there.
+    fn come_and_begin(&mut self, line: u64, words: &[f64]) {
+        let Some(mode) = ModeWords::of(self.machine) else {
             return;
         };
-        let letter = &self.base.axes[mode.turning].name;
-        let word = words.turning as u32;
-        self.writer.push(line, Event::WordLetter { word, coordinate: false, letter });
+        if let Some(clamp) = self.base.axes[mode.turning].clamp.as_ref() {
+            self.writer.push(line, Event::Word { text: &clamp.off });
+            self.clamps.on &= !(1 << mode.turning);
+        }
+        self.writer.push(line, Event::Turn { words });
+        self.smooth(line);
+        self.keep_tip(line, false);
+        let tool = None;
+        self.writer.push(line, Event::Position { tool, feed: None, plane_first: true, words });
+        self.clear = false;
+        self.tell_mode(line, &mode, mode.lines[0], (mode.length, mode.letter));
+        self.face.on = true;
+    }
+
+    /// The last move to the first position of an operation in a mode: down to it, at no more than `most` mm/min.
+    fn go_down(&mut self, block: &MotionBlock, most: f64) {
+        let count = self.writer.words();
+        match block.time.feed {
+            Some(feed) => self.linear(block.line, feed, &block.words[..count]),
+            None => self.go_at(block.line, most, &block.words[..count]),
+        }
+        if block.reason != BlockReason::Above {
+            self.begin_compensation(block.line);
+        }
     }
 
     /// Refuses to wait for other channels in the mode.
@@ -86,14 +152,6 @@ impl<'a> EmitStage<'a> {
         let Some(places) = self.face_words(mode) else {
             return;
         };
-        // It is the machine itself that comes there.
-        for joint in 0..self.base.axes.len() {
-            let clamp = self.base.axes[joint].clamp.as_ref();
-            if let Some(clamp) = clamp {
-                self.writer.push(line, Event::Word { text: &clamp.off });
-                self.clamps.on &= !(1 << joint);
-            }
-        }
         let place = mode.place(&block.joints);
         let radius = libm::hypot(place[0], place[1]);
         let count = self.writer.words();
@@ -102,21 +160,7 @@ impl<'a> EmitStage<'a> {
         words[places.turning] = 0.0;
         words[places.along] = high;
         words[places.across] = self.rounded(places.across, radius * places.scales[1]);
-        self.writer.push(line, Event::Turn { words: &words[..count] });
-        self.smooth(line);
-        self.keep_tip(line, false);
-        let tool = None;
-        let position =
-            Event::Position { tool, feed: None, plane_first: true, words: &words[..count] };
-        self.writer.push(line, position);
-        self.clear = false;
-        for text in &mode.on {
-            self.writer.push(line, Event::Word { text });
-        }
-        let letter = &mode.letter;
-        let word = places.turning as u32;
-        self.writer.push(line, Event::WordLetter { word, coordinate: true, letter });
-        self.face.on = true;
+        self.come_and_begin(line, &words[..count]);
         let mut from = [radius, 0.0];
         for to in FaceMode::round_to(place) {
             words[places.across] = self.rounded(places.across, to[0] * places.scales[0]);
@@ -126,76 +170,30 @@ impl<'a> EmitStage<'a> {
             self.go_at(line, way / minutes, &words[..count]);
             from = to;
         }
-        match block.time.feed {
-            Some(feed) => self.linear(line, feed, &block.words[..count]),
-            None => self.go_at(line, places.down, &block.words[..count]),
-        }
-        if block.reason != BlockReason::Above {
-            self.begin_compensation(line);
-        }
+        self.go_down(block, places.down);
     }
 
     /// The first position of an operation on the mantle: the part is turned to zero, the tool comes over the place far from
     /// it, the mode begins, and the part turns before the tool goes down.
     pub(super) fn position_on_mantle(&mut self, block: &MotionBlock, mode: &'a WrapMode) {
         let line = block.line;
-        let order = axis_words::order(self.base);
-        let place = |joint: usize| order.iter().position(|other| *other == joint);
-        let along = axis_words::depth(self.base);
-        let (Some(turning), Some(along)) = (place(mode.turning), along) else {
+        let (Some(turning), Some(along)) =
+            (self.word_of(mode.turning), axis_words::depth(self.base))
+        else {
             return;
         };
-        let Some(depth) = place(along) else {
+        let Some(depth) = self.word_of(along) else {
             return;
         };
-        if let Some(clamp) = self.base.axes[mode.turning].clamp.as_ref() {
-            self.writer.push(line, Event::Word { text: &clamp.off });
-            self.clamps.on &= !(1 << mode.turning);
-        }
         let count = self.writer.words();
         let mut words: WordValues = block.words;
         words[turning] = 0.0;
         words[depth] = self.height(block, depth);
-        self.writer.push(line, Event::Turn { words: &words[..count] });
-        self.smooth(line);
-        self.keep_tip(line, false);
-        let tool = None;
-        let position =
-            Event::Position { tool, feed: None, plane_first: true, words: &words[..count] };
-        self.writer.push(line, position);
-        self.clear = false;
-        for text in &mode.on {
-            self.writer.push(line, Event::Word { text });
-        }
-        if mode.changes_word(&self.base.axes[mode.turning].name) {
-            let letter = &mode.letter;
-            let word = turning as u32;
-            self.writer.push(line, Event::WordLetter { word, coordinate: mode.lengths, letter });
-        }
-        self.face.on = true;
+        self.come_and_begin(line, &words[..count]);
         words[turning] = block.words[turning];
         let around = self.base.axes[mode.turning].max_feed * mode.radius;
         self.go_at(line, around, &words[..count]);
-        match block.time.feed {
-            Some(feed) => self.linear(line, feed, &block.words[..count]),
-            None => self.go_at(line, self.base.axes[along].max_feed, &block.words[..count]),
-        }
-        if block.reason != BlockReason::Above {
-            self.begin_compensation(line);
-        }
-    }
-
-    fn end_wrap(&mut self, line: u64, mode: &'a WrapMode) {
-        for text in &mode.off {
-            self.writer.push(line, Event::Word { text });
-        }
-        let order = axis_words::order(self.base);
-        let letter = &self.base.axes[mode.turning].name;
-        let word = order.iter().position(|other| *other == mode.turning);
-        if let Some(word) = word.filter(|_| mode.changes_word(letter)) {
-            let word = word as u32;
-            self.writer.push(line, Event::WordLetter { word, coordinate: false, letter });
-        }
+        self.go_down(block, self.base.axes[along].max_feed);
     }
 
     /// The block in real axis values: where it begins and where it ends, which is checked and noted.
@@ -266,17 +264,20 @@ impl<'a> EmitStage<'a> {
         self.words.printed(place, value).unwrap_or(value)
     }
 
+    /// Place among the words of that of the axis at `joint`.
+    fn word_of(&self, joint: usize) -> Option<usize> {
+        axis_words::order(self.base).iter().position(|other| *other == joint)
+    }
+
     fn face_words(&self, mode: &FaceMode) -> Option<FaceWords> {
-        let order = axis_words::order(self.base);
-        let place = |joint: usize| order.iter().position(|other| *other == joint);
         let along = (0..self.base.axes.len())
             .find(|joint| *joint != mode.turning && *joint != mode.across)?;
         let inside = self.machine.word_map.as_ref().map_or(1.0, |map| map.factor(mode.across));
         let scales = [inside, self.factor(mode.across)].map(|scale| scale * self.length_unit());
         Some(FaceWords {
-            turning: place(mode.turning)?,
-            across: place(mode.across)?,
-            along: place(along)?,
+            turning: self.word_of(mode.turning)?,
+            across: self.word_of(mode.across)?,
+            along: self.word_of(along)?,
             scales,
             down: self.base.axes[along].max_feed,
         })

@@ -41,21 +41,10 @@ impl FaceWords {
     ) -> Option<Self> {
         let (_, face) = machine.in_face()?;
         let mode = face.face.as_ref()?;
-        let mut letters = outside.clone();
-        let index = |letter: &str| letter.bytes().next().map(|letter| usize::from(letter - b'A'));
-        let own = index(&machine.axes[mode.turning].name)?;
-        letters.letters[own] = AxisLetters::NONE;
-        letters.mask &= !(1 << own);
-        let place = u8::try_from(mode.turning).unwrap_or(AxisLetters::NONE);
-        let letter = index(&mode.letter)?;
-        letters.letters[letter] = place;
-        letters.mask |= 1 << letter;
-        letters.rotary &= !(1 << mode.turning);
+        let own = &machine.axes[mode.turning].name;
+        let mut letters = outside.in_mode(mode.turning, [own, &mode.letter], true)?;
         let factor = face.word_map.as_ref().map_or(1.0, |map| map.factor(mode.across));
         letters.scale[mode.across] = 1.0 / factor;
-        if let Some(row) = ["X", "Y", "Z"].iter().position(|name| *name == mode.letter) {
-            letters.cartesian[row] = Some(mode.turning);
-        }
         Some(Self { mode: Arc::new(mode.clone()), letters })
     }
 }
@@ -64,23 +53,11 @@ impl ControlState {
     /// The control interpolates in polar coordinates from here on.
     pub(super) fn begin_face(&mut self) -> Result<(), Box<Diagnostic>> {
         let Some(words) = self.face_words.clone() else {
-            let message =
-                "the control interpolates in polar coordinates from here on, and this is not run";
-            let finding = Diagnostic::error("nc-word", message);
-            let help = "[mode.face] of the machine file says what its words are then";
-            return Err(self.placed(finding.help(help)).boxed());
+            let word = "the control interpolates in polar coordinates from here on";
+            return Err(self.unknown_mode(word, "mode.face"));
         };
-        if self.face.is_some() {
-            return Err(self.refuse("nc-mode", "polar interpolation is in force already"));
-        }
         let mode = words.mode;
-        let lack = if self.tip_words() || !self.to_work.upright() {
-            Some("a plane, tool centre point control or a turned frame is in force".to_owned())
-        } else if self.state.compensation != 0 || self.cycles.in_force() {
-            Some("cutter compensation or a cycle is in force".to_owned())
-        } else {
-            self.stands_apart(&mode)
-        };
+        let lack = self.holds_off_modes().or_else(|| self.stands_apart(&mode));
         if let Some(lack) = lack {
             let message = format!("polar interpolation begins, and {lack}");
             return Err(self.refuse("nc-mode", message));

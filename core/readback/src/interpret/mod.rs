@@ -40,6 +40,7 @@ mod frames;
 mod go;
 mod machine_moves;
 mod meanings;
+mod mode_words;
 mod names;
 pub(crate) mod planes;
 mod relied;

@@ -30,20 +30,10 @@ impl WrapWords {
     pub(super) fn of(machine: &Machine, outside: &AxisLetters) -> Option<Self> {
         let (_, wrap) = machine.in_wrap()?;
         let mode = wrap.wrap.as_ref()?;
-        let mut letters = outside.clone();
-        let index = |letter: &str| letter.bytes().next().map(|letter| usize::from(letter - b'A'));
-        let own = index(&machine.axes[mode.turning].name)?;
-        letters.letters[own] = AxisLetters::NONE;
-        letters.mask &= !(1 << own);
-        let letter = index(&mode.letter)?;
-        letters.letters[letter] = u8::try_from(mode.turning).unwrap_or(AxisLetters::NONE);
-        letters.mask |= 1 << letter;
+        let own = &machine.axes[mode.turning].name;
+        let mut letters = outside.in_mode(mode.turning, [own, &mode.letter], mode.lengths)?;
         if mode.lengths {
-            letters.rotary &= !(1 << mode.turning);
             letters.scale[mode.turning] = 1.0 / mode.radius;
-            if let Some(row) = ["X", "Y", "Z"].iter().position(|name| *name == mode.letter) {
-                letters.cartesian[row] = Some(mode.turning);
-            }
         }
         Some(Self { mode: Arc::new(mode.clone()), letters })
     }
@@ -77,22 +67,14 @@ impl ControlState {
         word: &str,
     ) -> Result<(), Box<Diagnostic>> {
         let Some(words) = self.wrap_words.clone() else {
-            let message = format!(
-                "{word}: the control interpolates on a cylinder from here on, and this is not run"
-            );
-            let finding = Diagnostic::error("nc-word", message);
-            let help = "[mode.wrap] of the machine file says what its words are then";
-            return Err(self.placed(finding.help(help)).boxed());
+            let word = format!("{word}: the control interpolates on a cylinder from here on");
+            return Err(self.unknown_mode(&word, "mode.wrap"));
         };
         let mode = words.mode;
         let axis = &self.machine.axes[mode.turning];
         let turned = shorter(self.at.joints[mode.turning] - self.zero[mode.turning], 0.0);
-        let lack = if self.wrap_outside.is_some() || self.face.is_some() {
-            Some("it, or polar interpolation, is in force already".to_owned())
-        } else if self.tip_words() || !self.to_work.upright() {
-            Some("a plane, tool centre point control or a turned frame is in force".to_owned())
-        } else if self.state.compensation != 0 || self.cycles.in_force() {
-            Some("cutter compensation or a cycle is in force".to_owned())
+        let lack = if let Some(lack) = self.holds_off_modes() {
+            Some(lack)
         } else if let Some(radius) = radius.filter(|radius| (radius - mode.radius).abs() > SAME) {
             let [said, known] = [radius, mode.radius].map(Short);
             Some(format!("its radius is {said} mm, that of [mode.wrap] {known} mm"))

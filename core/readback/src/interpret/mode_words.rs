@@ -1,0 +1,55 @@
+//! What polar and cylinder interpolation of the control have in common: the word of the turning axis is another one, and what
+//! may not be in force as they begin.
+
+use post_machine::diagnostic::Diagnostic;
+
+use super::state::{AxisLetters, ControlState};
+
+impl AxisLetters {
+    /// The words in a mode, in which that of the axis at the place `turning` stands behind another letter than its own; it is a
+    /// length there, or an angle.
+    pub(super) fn in_mode(
+        &self,
+        turning: usize,
+        [own, letter]: [&str; 2],
+        length: bool,
+    ) -> Option<Self> {
+        let index = |letter: &str| letter.bytes().next().map(|letter| usize::from(letter - b'A'));
+        let [before, behind] = [index(own)?, index(letter)?];
+        let mut letters = self.clone();
+        letters.letters[before] = Self::NONE;
+        letters.mask &= !(1 << before);
+        letters.letters[behind] = u8::try_from(turning).unwrap_or(Self::NONE);
+        letters.mask |= 1 << behind;
+        if length {
+            letters.rotary &= !(1 << turning);
+            if let Some(row) = ["X", "Y", "Z"].iter().position(|name| *name == letter) {
+                letters.cartesian[row] = Some(turning);
+            }
+        }
+        Some(letters)
+    }
+}
+
+impl ControlState {
+    /// Why no mode can begin here.
+    pub(super) fn holds_off_modes(&self) -> Option<String> {
+        let lack = if self.wrap_outside.is_some() || self.face.is_some() {
+            "polar or cylinder interpolation is in force already"
+        } else if self.tip_words() || !self.to_work.upright() {
+            "a plane, tool centre point control or a turned frame is in force"
+        } else if self.state.compensation != 0 || self.cycles.in_force() {
+            "cutter compensation or a cycle is in force"
+        } else {
+            return None;
+        };
+        Some(lack.to_owned())
+    }
+
+    /// `word` begins a mode that the machine file says nothing of; its table is `key`.
+    pub(super) fn unknown_mode(&self, word: &str, key: &str) -> Box<Diagnostic> {
+        let message = format!("{word}, and this is not run");
+        let help = format!("[{key}] of the machine file says what its words are then");
+        self.placed(Diagnostic::error("nc-word", message).help(help)).boxed()
+    }
+}

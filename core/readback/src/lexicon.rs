@@ -67,6 +67,8 @@ pub struct Lexicon {
     modes: u8,
     /// A cycle returns to a level that the program names.
     return_levels: bool,
+    /// A constant cutting speed is a kind of the feed, and every other kind ends it.
+    speed_goes_with_feed: bool,
 }
 
 impl Lexicon {
@@ -81,6 +83,7 @@ impl Lexicon {
             syntax: syntax(words, language),
             all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
             return_levels: words.iter().any(|word| word.meaning == Meaning::ReturnLevel),
+            speed_goes_with_feed: language == Language::Names,
             path_modes: words.iter().any(|word| word.word == "G64"),
             changes_by_word: words.iter().any(|word| word.meaning == Meaning::ToolChange),
             letters: [None; 26],
@@ -194,8 +197,14 @@ impl Lexicon {
         best.map_or_else(|| self.g(code), |choice| WordMeaning::Means(choice.meaning))
     }
 
-    /// The letter behind which the tolerance of a smoothing word stands: P of `G64 P`.
-    pub(crate) fn tolerance_letter(&self, code: GCode) -> Option<u8> {
+    /// A constant cutting speed is a kind of the feed, and every other kind ends it: G94, G95, G96, G961 of Siemens are of
+    /// one group.
+    pub(crate) fn speed_goes_with_feed(&self) -> bool {
+        self.speed_goes_with_feed
+    }
+
+    /// The letter beside a code behind which a value of it stands: the tolerance of `G64 P`, the limit of `G96 D`.
+    pub(crate) fn value_letter(&self, code: GCode) -> Option<u8> {
         let mut choices = self.choices.iter().filter(|choice| choice.code == code);
         choices.find_map(|choice| {
             let open = choice.beside.iter().find(|(_, value)| value.is_none());

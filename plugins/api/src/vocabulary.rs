@@ -312,6 +312,19 @@ codes! {
         Clamp = 166 "CLAMP",
         /// A rotary axis is loosened: M11.
         Unclamp = 167 "UNCLAMP",
+        /// The spindle's word is a speed of the surface, and the feed is one a revolution: G96 of Siemens.
+        SurfaceSpeedPerRevolution = 203 "SURFACE_SPEED_PER_REVOLUTION",
+        /// The spindle's word is a speed of the surface, and the feed is one a minute: G961.
+        SurfaceSpeedPerMinute = 204 "SURFACE_SPEED_PER_MINUTE",
+        /// The spindle's word is revolutions a minute, and the feed is one a revolution: G97 of Siemens.
+        FixedSpeedPerRevolution = 205 "FIXED_SPEED_PER_REVOLUTION",
+        /// The spindle's word is revolutions a minute, and the feed is one a minute: G971.
+        FixedSpeedPerMinute = 206 "FIXED_SPEED_PER_MINUTE",
+        /// The tool and the number of its offsets, which are the last two digits and come into force, 00 for none: T0101 of
+        /// Fanuc's lathes.
+        ToolAndOffset = 207 "TOOL_AND_OFFSET",
+        /// It is not followed what the control does then: the program is refused there.
+        NotFollowed = 208 "NOT_FOLLOWED",
         /// A subprogram ends: M99, M17, RTS.
         SubprogramEnd = 170 "SUBPROGRAM_END",
         /// A subprogram within this program is called by the number of its block: M97.

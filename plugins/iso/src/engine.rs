@@ -198,6 +198,10 @@ impl Engine {
 
     /// Everything modal in a known state.
     fn safe(&mut self, out: &mut String) {
+        if self.table.surface.is_some_and(|words| words.per_minute.is_some()) {
+            // The feed of the block ends the cutting speed.
+            self.end_surface_speed();
+        }
         let mut safe = self.table.safe.to_owned();
         if self.table.offset.at_start {
             safe.push(' ');
@@ -210,6 +214,7 @@ impl Engine {
             self.cancel_what_was(out);
         }
         self.motion.feeds_per_minute();
+        self.motion.plane_is_among(&safe);
     }
 
     /// What shifts, turns, scales or mirrors is cancelled, unless it is.

@@ -70,6 +70,11 @@ pub trait Control: Sized + Send + 'static {
     /// How it differs from the others.
     const TABLE: &'static Table;
 
+    /// The table of one program, where the options choose between several.
+    fn table(_setup: &Setup<'_>) -> &'static Table {
+        Self::TABLE
+    }
+
     /// Called once a program, with the setup that the engine has found good.
     ///
     /// # Errors
@@ -190,7 +195,7 @@ impl<C: Control> Dialect for Iso<C> {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        let engine = Engine::new(C::TABLE, setup)?;
+        let engine = Engine::new(C::table(setup), setup)?;
         let control = C::open(setup)?;
         Ok(Iso { control, engine, instead: None })
     }

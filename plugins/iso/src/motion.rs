@@ -133,6 +133,26 @@ impl MotionWriter {
         self.other_plane = false;
     }
 
+    /// The plane among these words is in force.
+    pub(crate) fn plane_is_among(&mut self, words: &str) {
+        let named = |plane: &&str| words.split_whitespace().any(|word| word == *plane);
+        if let Some(plane) = self.codes.planes.iter().find(named) {
+            self.plane.set(plane);
+        }
+    }
+
+    /// The kinds of the feed have these words from here on; `now` was written, and is in force.
+    pub(crate) fn feeds_by(&mut self, words: [&'static str; 3], now: &'static str) {
+        self.codes.feed = words;
+        self.feed_mode.set(now);
+        self.feed.forget();
+    }
+
+    /// The word of the feed's kind in force is this one.
+    pub(crate) fn feeds_are(&self, word: &'static str) -> bool {
+        self.feed_mode.is(word)
+    }
+
     /// The plane of X and Y is in force again, in the block under construction.
     pub(crate) fn plane_xy(&mut self) {
         if std::mem::take(&mut self.other_plane) {

@@ -127,12 +127,6 @@ impl SettingWords {
         style.write(&mut number, value, decimals);
         Ok(words.replace("{}", &number))
     }
-
-    /// The word of a fixed speed, if a constant cutting speed was in force.
-    pub(crate) fn end_surface_speed(&mut self, table: &Table) -> Option<&'static str> {
-        let words = table.surface?;
-        self.surface.take().map(|_| words.codes[1])
-    }
 }
 
 /// `0.01 G5.1 Q1 R5`.
@@ -262,7 +256,25 @@ impl Engine {
             SpindleSense::CounterClockwise => counter,
         });
         block.end(out);
+        if let Some([per_minute, _]) = words.per_minute {
+            // No feed by time: its word would end the cutting speed.
+            self.motion.feeds_by([per_minute, "", words.codes[0]], words.codes[0]);
+        }
         Ok(())
+    }
+
+    /// The word of a fixed speed, if a constant cutting speed was in force.
+    pub(crate) fn end_surface_speed(&mut self) -> Option<&'static str> {
+        let words = self.table.surface?;
+        self.settings.surface.take()?;
+        let fixed = match words.per_minute {
+            Some([kept, fixed]) if self.motion.feeds_are(kept) => fixed,
+            _ => words.codes[1],
+        };
+        if words.per_minute.is_some() {
+            self.motion.feeds_by(self.table.codes.feed, fixed);
+        }
+        Some(fixed)
     }
 
     fn registers(&mut self, length: Option<u32>, radius: Option<u32>) -> Result<(), String> {

@@ -343,6 +343,9 @@ pub enum SplineForm {
 pub struct SurfaceSpeed {
     /// Codes of a constant cutting speed, and of a fixed speed again: `G96`, `G97`.
     pub codes: [&'static str; 2],
+    /// Where the codes are kinds of the feed too, of which one alone is in force: those above go with the feed a
+    /// revolution, these with the feed a minute: `G961`, `G971`.
+    pub per_minute: Option<[&'static str; 2]>,
     /// The largest speed: `G92 S` in a block ahead, or `D` in the same.
     pub most: &'static str,
 }

@@ -185,9 +185,10 @@ impl Engine {
             let [on, off] = surface.codes;
             add(on, M::SurfaceSpeed);
             add(off, M::SurfaceSpeedOff);
-            // A letter alone belongs to the word of the cutting speed.
-            if surface.most.len() > 1 {
-                add(surface.most, M::SpeedLimit);
+            match surface.most.len() {
+                // A letter alone belongs to the word of the cutting speed.
+                1 => add(&format!("{on} {}", surface.most), M::SurfaceSpeed),
+                _ => add(surface.most, M::SpeedLimit),
             }
         }
         for code in self.cycles.codes() {

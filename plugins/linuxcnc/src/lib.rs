@@ -56,7 +56,7 @@ impl Control for LinuxCnc {
         splines: SplineForm::Even { code: "G5.2", end: "G5.3" },
         smoothing: SMOOTHING,
         smoothing_anywhere: true,
-        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "D" }),
+        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], per_minute: None, most: "D" }),
         message: "MSG, ",
         units_inside: true,
         probe: "G38.2",

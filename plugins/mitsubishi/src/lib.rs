@@ -27,7 +27,7 @@ impl Control for Mitsubishi {
         plane: Plane::Euler { on: "G68.2", turn: "G53.1", off: "G69" },
         // Else parameter #8159 decides, as delivered for a compensating chuck. Beside `,R1` F may be the pitch.
         rigid: Rigid::Ahead("M29"),
-        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "G92 S" }),
+        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], per_minute: None, most: "G92 S" }),
         probe: "G31",
         subprogram: Subprogram::M98,
         words: &[

@@ -1,7 +1,7 @@
 //! What events become that the engine has no words for.
 
 use post_iso::{Control, Engine};
-use post_plugin::{Compensation, Drilling, Event, Feed, Spindle};
+use post_plugin::{Compensation, Drilling, Event, Spindle};
 
 use crate::Siemens;
 use crate::table::is_work_offset;
@@ -49,11 +49,6 @@ impl Siemens {
                 return Err(format!(
                     "{axis} turns by a whole turn or more in one block, which the words of a modulo axis cannot say: \
                      endless = \"counted\" where the control counts turns"
-                ));
-            }
-            Event::Linear { feed, .. } if self.surface && !matches!(feed, Feed::PerMinute(_)) => {
-                return Err(format!(
-                    "a feed of {feed} would end the constant cutting speed (G961)"
                 ));
             }
             Event::Rapid { words, tool } if self.by_vector() => {
@@ -113,7 +108,6 @@ impl Siemens {
                 }
             }
             Event::Spindle(spindle) => {
-                self.surface = false;
                 self.turning = match spindle {
                     Spindle::On { rpm, sense } => Some((rpm, sense)),
                     Spindle::Off | Spindle::Orient => None,
@@ -121,12 +115,8 @@ impl Siemens {
                 return Ok(false);
             }
             Event::SurfaceSpeed { .. } => {
-                engine.write(event, out)?;
-                // G961 leaves the feed a minute.
-                engine.motion.forget_feed();
-                engine.motion.feeds_per_minute();
-                self.surface = true;
                 self.turning = None;
+                return Ok(false);
             }
             Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
                 if self.across != "G17" =>

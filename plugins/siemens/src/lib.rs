@@ -59,8 +59,6 @@ struct Siemens {
     /// Vector of the tool, in units of its last decimal.
     vector: Modal<[f64; 3]>,
     turning: Option<SpindleTurning>,
-    /// The speed is one of cutting.
-    surface: bool,
     /// D0 is not in force.
     length: Modal<bool>,
     drilling: Option<Drilling>,
@@ -118,7 +116,6 @@ impl Control for Siemens {
             tilted: false,
             vector: Modal::default(),
             turning: None,
-            surface: false,
             length: Modal::default(),
             drilling: None,
             called: None,

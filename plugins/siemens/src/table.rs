@@ -42,8 +42,8 @@ pub(crate) const TABLE: Table = Table {
     leave: &[Leave::Retract],
     cycles: &[],
     surface: Some(SurfaceSpeed {
-        // With the feed a minute, which G96 and G97 leave.
-        codes: ["G961", "G971"],
+        codes: ["G96", "G97"],
+        per_minute: Some(["G961", "G971"]),
         most: "LIMS=",
     }),
     subprogram: Subprogram { number: "L{}", name: "{}", times: " P" },

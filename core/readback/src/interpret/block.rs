@@ -315,7 +315,11 @@ impl ControlState {
             }
             self.modal.feed = Some(feed * unit);
         }
-        if words.present & (bit(b'S') | bit(b'T')) != 0 || asked.change || asked.spindle.is_some() {
+        if words.present & (bit(b'S') | bit(b'T')) != 0
+            || self.modal.kept_speed
+            || asked.change
+            || asked.spindle.is_some()
+        {
             self.tool_and_spindle(words, asked)?;
         }
         if let Some(code) = asked.coolant {

@@ -409,6 +409,7 @@ impl ModalState {
             feed: None,
             speed: 0.0,
             surface_speed: false,
+            kept_speed: false,
             most_speed: None,
             return_to: ReturnTo::Start,
             return_level: None,

@@ -35,6 +35,12 @@ impl ControlState {
                 self.end_face()?;
                 self.end_wrap()?;
             }
+            Meaning::SurfaceSpeed => {
+                if let Some(letter) = code.and_then(|code| self.lexicon.value_letter(code)) {
+                    // Without it there is no limit.
+                    self.modal.most_speed = words.take(letter);
+                }
+            }
             _ => {}
         }
         if self.sets_mode(meaning) || asked.takes(code, meaning) {
@@ -45,7 +51,7 @@ impl ControlState {
             Meaning::CompensationLeft => self.compensate(-1, words)?,
             Meaning::CompensationRight => self.compensate(1, words)?,
             Meaning::Smoothing => {
-                let letter = code.and_then(|code| self.lexicon.tolerance_letter(code));
+                let letter = code.and_then(|code| self.lexicon.value_letter(code));
                 let tolerance = letter.and_then(|letter| words.take(letter));
                 words.used |= bit(b'P') | bit(b'Q') | bit(b'R');
                 let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
@@ -81,8 +87,9 @@ impl ControlState {
                 self.use_work_offset(&format!("G{number}"))?;
             }
             Meaning::SpeedLimit => {
-                self.modal.most_speed = words.take(b'S');
+                let most = words.take(b'S');
                 words.present &= !bit(b'S');
+                self.limit_speed(most);
             }
             Meaning::Subprogram
             | Meaning::LocalSubprogram
@@ -134,16 +141,30 @@ impl ControlState {
             Meaning::PlaneZx => self.modal.plane = ArcPlane::Zx,
             Meaning::PlaneYz => self.modal.plane = ArcPlane::Yz,
             Meaning::FeedPerMinute | Meaning::FeedPerMinuteAllAxes => {
-                self.feed_mode(FeedMeaning::PerMinute)
+                self.feed_of_its_own(FeedMeaning::PerMinute)
             }
-            Meaning::InverseTime => self.feed_mode(FeedMeaning::Inverse),
-            Meaning::FeedPerRevolution => self.feed_mode(FeedMeaning::PerRevolution),
+            Meaning::InverseTime => self.feed_of_its_own(FeedMeaning::Inverse),
+            Meaning::FeedPerRevolution => self.feed_of_its_own(FeedMeaning::PerRevolution),
             Meaning::ReturnStart => self.modal.return_to = ReturnTo::Start,
             Meaning::ReturnClearance => self.modal.return_to = ReturnTo::Clearance,
             Meaning::CentreAbsolute => self.modal.centres_absolute = true,
             Meaning::CentreIncremental => self.modal.centres_absolute = false,
             Meaning::SurfaceSpeed => self.modal.surface_speed = true,
-            Meaning::SurfaceSpeedOff => self.modal.surface_speed = false,
+            Meaning::SurfaceSpeedOff => self.keep_speed(),
+            Meaning::SurfaceSpeedPerRevolution | Meaning::SurfaceSpeedPerMinute => {
+                self.modal.surface_speed = true;
+                self.feed_mode(match meaning {
+                    Meaning::SurfaceSpeedPerMinute => FeedMeaning::PerMinute,
+                    _ => FeedMeaning::PerRevolution,
+                });
+            }
+            Meaning::FixedSpeedPerRevolution | Meaning::FixedSpeedPerMinute => {
+                self.keep_speed();
+                self.feed_mode(match meaning {
+                    Meaning::FixedSpeedPerMinute => FeedMeaning::PerMinute,
+                    _ => FeedMeaning::PerRevolution,
+                });
+            }
             Meaning::RotaryShortest => self.modal.shortest = Some(true),
             Meaning::RotaryAsWritten => self.modal.shortest = Some(false),
             Meaning::MachineCoordinatesOn => self.modal.machine = true,
@@ -161,6 +182,14 @@ impl ControlState {
         true
     }
 
+    /// A kind of the feed that says nothing of the spindle, but may end its cutting speed.
+    fn feed_of_its_own(&mut self, mode: FeedMeaning) {
+        if self.lexicon.speed_goes_with_feed() {
+            self.keep_speed();
+        }
+        self.feed_mode(mode);
+    }
+
     pub(super) fn feed_mode(&mut self, mode: FeedMeaning) {
         if self.modal.feed_mode != mode {
             self.modal.feed_mode = mode;
@@ -175,6 +204,7 @@ fn is_not_followed(meaning: Meaning) -> bool {
     matches!(
         meaning,
         Meaning::CycleOther
+            | Meaning::NotFollowed
             | Meaning::Scale
             | Meaning::Mirror
             | Meaning::Polar

@@ -98,7 +98,10 @@ impl ControlState {
                 let value = worth(self)?;
                 self.modal.named_register = Some(which(b'H', value, self)?);
             }
-            WordMeaning::Means(Meaning::SpeedLimit) => self.modal.most_speed = Some(worth(self)?),
+            WordMeaning::Means(Meaning::SpeedLimit) => {
+                let most = worth(self)?;
+                self.limit_speed(Some(most));
+            }
             WordMeaning::Means(Meaning::Nothing) if name == "CTOL" => {
                 let tolerance = worth(self)?;
                 self.contour_tolerance(tolerance);

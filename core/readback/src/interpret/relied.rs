@@ -40,7 +40,11 @@ impl ModalGroup {
             Meaning::FeedPerMinute
             | Meaning::FeedPerMinuteAllAxes
             | Meaning::InverseTime
-            | Meaning::FeedPerRevolution => Self::Feed,
+            | Meaning::FeedPerRevolution
+            | Meaning::SurfaceSpeedPerRevolution
+            | Meaning::SurfaceSpeedPerMinute
+            | Meaning::FixedSpeedPerRevolution
+            | Meaning::FixedSpeedPerMinute => Self::Feed,
             Meaning::CompensationOff => Self::Compensation,
             Meaning::CycleOff => Self::Cycle,
             Meaning::TiltedPlaneOff => Self::TiltedPlane,

@@ -19,8 +19,12 @@ impl ControlState {
         words: &mut BlockWords,
         asked: &BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
-        if let Some(speed) = words.take(b'S') {
+        let kept = std::mem::take(&mut self.modal.kept_speed) && asked.spindle.is_none();
+        let speed = words.take(b'S');
+        if let Some(speed) = speed {
             self.modal.speed = speed;
+        }
+        if speed.is_some() || kept {
             // Beside a word that turns it the new speed never has the old sense.
             if matches!(asked.spindle, None | Some(SpindleRequest::Off)) {
                 self.speed_changed();
@@ -28,12 +32,16 @@ impl ControlState {
         }
         if let Some(number) = words.take(b'T').filter(|number| !number.is_nan()) {
             let number = which(b'T', number, self)?;
-            self.tools.ready = Some(number);
-            self.tools.ready_name = None;
-            if !self.lexicon.changes_by_word() {
-                self.change_tool(Some(number), None)?;
-            } else if !asked.change {
-                self.tell(ProgramEvent::Preselect(number));
+            if self.lexicon.letter(b'T') == Some(Meaning::ToolAndOffset) {
+                self.tool_and_offset(number)?;
+            } else {
+                self.tools.ready = Some(number);
+                self.tools.ready_name = None;
+                if !self.lexicon.changes_by_word() {
+                    self.change_tool(Some(number), None)?;
+                } else if !asked.change {
+                    self.tell(ProgramEvent::Preselect(number));
+                }
             }
         }
         if asked.change {
@@ -62,6 +70,29 @@ impl ControlState {
             standstill.coolant = Some(self.line);
         }
         self.state_changed();
+    }
+
+    /// The largest speed at a constant cutting speed from here on, revolutions a minute; none: any.
+    pub(super) fn limit_speed(&mut self, most: Option<f64>) {
+        self.modal.most_speed = most;
+        if matches!(self.state.spindle, SpindleState::Surface { .. }) {
+            self.speed_changed();
+        }
+    }
+
+    /// The cutting speed is kept no more: the spindle turns on as fast as it does where the tool stands, until S says another
+    /// speed.
+    pub(super) fn keep_speed(&mut self) {
+        if !std::mem::take(&mut self.modal.surface_speed) {
+            return;
+        }
+        let tip = self.at.pose.tip;
+        let turning = self.state.spindle.surface_rpm([tip, tip]);
+        // Without a limit there is no speed on the line of the spindle.
+        if let Some([rpm, _]) = turning.filter(|[rpm, _]| rpm.is_finite()) {
+            self.modal.speed = rpm;
+            self.modal.kept_speed = true;
+        }
     }
 
     /// S changed while the spindle turns. One that a stop has stopped stays so.

@@ -178,6 +178,8 @@ pub(super) struct ModalState {
     pub speed: f64,
     /// The speed is that of the cut, m/min: G96.
     pub surface_speed: bool,
+    /// The speed is that at which a cutting speed ended in this block.
+    pub kept_speed: bool,
     /// The spindle turns no faster than this, revolutions a minute: LIMS.
     pub most_speed: Option<f64>,
     /// Where a cycle returns to.

@@ -58,6 +58,23 @@ impl ControlState {
         }
     }
 
+    /// T0101: the turret turns to the tool, unless it stands there, and the offsets of the last two digits are in force.
+    pub(super) fn tool_and_offset(&mut self, number: u32) -> Result<(), Box<Diagnostic>> {
+        let [tool, offset] = [number / 100, number % 100];
+        if tool == 0 && offset != 0 {
+            let message = format!("T{number} has the offsets {offset} and names no tool");
+            return Err(self.refuse("nc-word", message));
+        }
+        if tool != 0 && self.state.tool != Some(tool) {
+            self.change_tool(Some(tool), None)?;
+        }
+        self.tools.by_tool = false;
+        self.tools.stated = None;
+        self.tools.length_on = offset != 0;
+        self.state.length_register = (offset != 0).then_some(offset);
+        self.length_changed()
+    }
+
     /// The words have the whole tool in them, whether its length is called or not: the work offset was measured with it
     /// in the spindle, or no linear axis is there that could be shifted.
     fn is_whole(&self) -> bool {

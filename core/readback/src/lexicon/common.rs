@@ -123,6 +123,8 @@ const MACRO: WordTable = &[
     ("M29", M::Nothing),
     ("M129", M::TcpOff),
     ("M97", M::LocalSubprogram),
+    ("G50 S", M::SpeedLimit),
+    ("G92 S", M::SpeedLimit),
 ];
 
 const RS274: WordTable = &[
@@ -145,6 +147,7 @@ const RS274: WordTable = &[
     ("G92.1", M::SetPositionOff),
     ("G92.2", M::SetPositionOff),
     ("G92.3", M::SetPositionAgain),
+    ("G96 D", M::SurfaceSpeed),
     ("M48", M::Nothing),
     ("M49", M::Nothing),
     ("M50", M::Nothing),
@@ -203,8 +206,13 @@ const NAMES: WordTable = &[
     ("G93", M::InverseTime),
     ("G94", M::FeedPerMinute),
     ("G95", M::FeedPerRevolution),
-    ("G96", M::SurfaceSpeed),
-    ("G97", M::SurfaceSpeedOff),
+    ("G96", M::SurfaceSpeedPerRevolution),
+    ("G961", M::SurfaceSpeedPerMinute),
+    ("G962", M::SurfaceSpeed),
+    ("G97", M::FixedSpeedPerRevolution),
+    ("G971", M::FixedSpeedPerMinute),
+    ("G972", M::SurfaceSpeedOff),
+    ("G973", M::FixedSpeedPerRevolution),
     ("CR", M::Radius),
     ("AR", M::ArcAngle),
     ("TURN", M::Turns),

@@ -28,8 +28,7 @@ impl Engine {
         self.spindle.set(on);
         self.turning = on.then_some(spindle);
         self.tapped = false;
-        let fixed = self.settings.end_surface_speed(self.table);
-        if let Some(fixed) = fixed {
+        if let Some(fixed) = self.end_surface_speed() {
             // The next speed is one in revolutions, whatever stands between.
             self.motion.block.word(fixed);
         }

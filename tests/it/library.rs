@@ -51,6 +51,7 @@ pub const LIBRARY: &[Row] = &[
     row("kr6-pose", "cls", 60.0, "over-travel"),
     row("kr6-r700", "cls", 60.0, "out-of-reach"),
     row("lathe-xz", "cls", 40.0, "out-of-reach"),
+    row("lathe-xz-a", "cls", 40.0, "out-of-reach"),
     row("lathe-xzc-face", "cls", 60.0, "out-of-reach"),
     row("lathe-xzc-mantle", "cls", 60.0, "out-of-reach"),
     row("lathe-xzc-polar", "cls", 60.0, "out-of-reach"),

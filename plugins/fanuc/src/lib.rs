@@ -2,13 +2,18 @@
 //!
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
+mod lathe;
+
 use post_iso::{
-    Control, Iso, Offset, Plane, Rigid, SplineForm, Subprogram, SurfaceSpeed, Table, Tcp,
+    Control, Engine, Iso, Offset, Plane, Rigid, SplineForm, Subprogram, SurfaceSpeed, Table, Tcp,
     iso_options, options, words,
 };
-use post_plugin::{Meaning, OptionSpec, Setup, export_dialect};
+use post_plugin::{Event, Meaning, OptionKind, OptionSpec, Setup, Value, export_dialect};
 
-struct Fanuc;
+struct Fanuc {
+    /// T calls a tool with its offsets, from a turret.
+    turret: bool,
+}
 
 impl Control for Fanuc {
     const LEAVES_CUTS: bool = true;
@@ -30,7 +35,7 @@ impl Control for Fanuc {
         rigid: Rigid::Ahead("M29"),
         splines: SplineForm::Knots { code: "G6.2", begin: "G5 P10000", end: "G5 P0" },
         smoothing: SMOOTHING,
-        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], most: "G92 S" }),
+        surface: Some(SurfaceSpeed { codes: ["G96", "G97"], per_minute: None, most: "G92 S" }),
         probe: "G31",
         subprogram: Subprogram::M98,
         words: &[
@@ -45,12 +50,53 @@ impl Control for Fanuc {
         ..Table::ISO
     };
 
-    fn open(_: &Setup<'_>) -> Result<Self, String> {
-        Ok(Fanuc)
+    fn table(setup: &Setup<'_>) -> &'static Table {
+        match setup.text("system") {
+            "A" => &lathe::A,
+            "B" => &lathe::B,
+            "C" => &lathe::C,
+            _ => Self::TABLE,
+        }
+    }
+
+    fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        Ok(Fanuc { turret: setup.text("system") != "M" })
+    }
+
+    fn write(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        match *event {
+            Event::ToolChange { number, register, name, .. } if self.turret => {
+                if !(1..=99).contains(&number) || register > 99 {
+                    return Err(format!(
+                        "T has two digits for the tool and two for its offsets, and tool {number} has the offsets {register}"
+                    ));
+                }
+                engine.change(number, &format!("T{number:02}{register:02}"), register, name, out);
+                Ok(true)
+            }
+            // A turret has all of its tools at hand, and T would turn it.
+            Event::Preselect { .. } if self.turret => Ok(true),
+            _ => Ok(false),
+        }
     }
 }
 
+/// The system of G codes.
+const SYSTEM: OptionSpec = OptionSpec {
+    key: "system",
+    kind: OptionKind::Choice(&["M", "A", "B", "C"]),
+    default: Value::Text("M"),
+    help: "The system of G codes: M on machining centres; A, B or C on lathes, as parameter 3401 #6 and #7 has it (A where \
+           both are 0). There T calls a tool with its offsets (T0101).",
+};
+
 const OPTIONS: &[OptionSpec] = iso_options![
+    SYSTEM,
     options::program_number(9999),
     options::SPACES,
     options::inverse_time_decimals(3),

@@ -1,6 +1,8 @@
 // Bundles the extension and packs it: a .vsix is a zip with a manifest. The same sources make the same bytes.
-// `node build.mjs [SCHEMA]`: SCHEMA is what `post schema` prints.
+// `node build.mjs SCHEMA`: SCHEMA is what `post schema` prints. For VS Code for the Web the module that `editors/web/build`
+// makes is packed too, if it is there.
 
+import { existsSync } from "node:fs";
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { crc32, deflateRawSync } from "node:zlib";
 import { build } from "esbuild";
@@ -21,6 +23,21 @@ const bundle = await build({
   write: false,
   legalComments: "none",
 });
+
+/** The module; without it the extension is none of VS Code for the Web. */
+const module = "../web/out/package/post.wasm";
+const web = [];
+if (existsSync(module)) {
+  const options = { bundle: true, platform: "browser", target: "es2022", minify: true, write: false, legalComments: "none" };
+  const extension = await build({ ...options, entryPoints: ["src/web.js"], format: "cjs", external: ["vscode"] });
+  const server = await build({ ...options, entryPoints: ["src/server.js"], format: "iife" });
+  web.push(["extension/web.js", Buffer.from(extension.outputFiles[0].contents)]);
+  web.push(["extension/server.js", Buffer.from(server.outputFiles[0].contents)]);
+  web.push(["extension/post.wasm", await readFile(module)]);
+} else {
+  delete about.browser;
+  console.log(`without ${module}: not for VS Code for the Web`);
+}
 
 const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll('"', "&quot;");
 
@@ -50,19 +67,22 @@ const types = `<?xml version="1.0" encoding="utf-8"?>
   <Default Extension="json" ContentType="application/json"/>
   <Default Extension="js" ContentType="application/javascript"/>
   <Default Extension="md" ContentType="text/markdown"/>
+  <Default Extension="wasm" ContentType="application/wasm"/>
   <Default Extension="vsixmanifest" ContentType="text/xml"/>
 </Types>
 `;
 
 const { languages, grammars: coloured } = about.contributes;
-const own = ["package.json", ...languages.map((language) => language.configuration.slice(2))];
+const own = [...languages.map((language) => language.configuration.slice(2))];
 const grammars = coloured.map((grammar) => grammar.path.slice(2));
 const files = [
+  ["extension/package.json", Buffer.from(`${JSON.stringify(about, null, 2)}\n`)],
   ["extension.vsixmanifest", Buffer.from(manifest)],
   ["[Content_Types].xml", Buffer.from(types)],
   ["extension/extension.js", Buffer.from(bundle.outputFiles[0].contents)],
   ["extension/machine.schema.json", await readFile(schema)],
   ["extension/readme.md", await readFile("../README.md")],
+  ...web,
 ];
 for (const name of [...own, ...grammars]) {
   const bytes = await readFile(name);

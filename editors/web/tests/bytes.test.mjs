@@ -9,7 +9,8 @@ import { Post } from "../js/module.mjs";
 import { browser, byCommand, each, jobs, module, page, told, words } from "./common.mjs";
 
 const { machines, all } = jobs();
-const commands = each(all, os.availableParallelism?.() ?? 2, byCommand);
+const threads = os.availableParallelism();
+const commands = each(all, threads, byCommand);
 
 /** A line for each place it runs in: what was compared. */
 function counted(where, wanted, found) {
@@ -21,7 +22,7 @@ function counted(where, wanted, found) {
   for (const [index, job] of all.entries()) {
     assert.deepEqual(found[index], wanted[index], `${where}: ${job.name} on ${job.machine}`);
   }
-  assert.ok(written > machines.length, `${written} programs`);
+  assert.ok(written > 30, `${written} programs`);
 }
 
 test("in Node", async () => {

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::disk;
+use super::disk;
 
 /// How the system tells files apart: device and number on it.
 #[cfg(unix)]

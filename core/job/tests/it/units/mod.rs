@@ -6,6 +6,7 @@ mod cl_source;
 mod cl_window;
 mod gauges;
 mod grid;
+mod memory_disk;
 mod one_job;
 mod read_ahead;
 mod solids;
@@ -18,6 +19,8 @@ mod beside;
 mod branch;
 #[path = "../../../src/predict/measured/clock.rs"]
 mod clock;
+#[path = "../../../src/disk/memory.rs"]
+mod disk_in_memory;
 #[path = "../../../src/files/chart/envelope.rs"]
 mod envelope;
 #[path = "../../../src/plan_rounds/excess.rs"]
@@ -38,3 +41,5 @@ mod spectrum;
 mod svg;
 #[path = "../../../src/files/temporary.rs"]
 mod temporary;
+
+use post_job::disk;

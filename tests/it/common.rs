@@ -9,7 +9,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// The package, and the command that it makes.
-pub const PACKAGE: &str = "post";
+pub const PACKAGE: &str = "nc-post";
 pub const BINARY: &str = env!("CARGO_BIN_EXE_post");
 
 /// A sample on a machine that can make it.

@@ -10,8 +10,8 @@ use crate::common::post_in;
 /// Two blocks beside one another, 35 mm long and 30 mm high, their tops at the part's Z0: one in the part frame, the other where
 /// it is in the machine frame with the part on 0, 0, -300.
 const BOTH: &str = "extends = \"vmc\"\nname = \"mine\"\n\
-    [stock.left]\nblock = [[-40, -30, -30], [-5, 30, 0]]\ncut = true\n\
-    [stock.right]\non = \"w\"\nblock = [[15, -30, -330], [50, 30, -300]]\ncut = true\n\
+    [stock.left]\nblock = [[-40, -30, -30], [-5, 30, 0]]\nresolution = 0.5\ncut = true\n\
+    [stock.right]\non = \"w\"\nblock = [[15, -30, -330], [50, 30, -300]]\nresolution = 0.5\ncut = true\n\
     [tools.1]\nlength = 100\nholder = [[0, 25], [60, 25]]\ncutter = [[0, 5], [40, 5]]\nedge = 22\n";
 
 /// A program with these lines behind the tool's approach.
@@ -63,7 +63,7 @@ fn each_stock_is_cut_by_itself() {
     assert_eq!(cut.len(), 2, "{said}");
     for [least, most] in cut {
         let truth = 35.0 * 10.0 * 6.0;
-        assert!(least <= truth && truth <= most && most - least < 0.1 * truth, "{said}");
+        assert!(least <= truth && truth <= most && most - least < 0.5 * truth, "{said}");
     }
     // Each in the frame of its shape.
     for (name, low, high) in [("left", [-40.0, -30.0], 0.0), ("right", [15.0, -330.0], -300.0)] {
@@ -120,7 +120,7 @@ fn a_stock_hangs_on_what_carries_it() {
     let hole = std::f64::consts::PI * 25.0 * 6.0;
     let [left, right] = cut(&said)[..] else { panic!("{said}") };
     assert!(left[1] == 0.0, "{said}");
-    assert!(right[0] <= hole && hole <= right[1] && right[0] > 0.8 * hole, "{said}");
+    assert!(right[0] <= hole && hole <= right[1] && right[0] > 0.6 * hole, "{said}");
     // Where the tool has been in the part says nothing of what stands on the bed: there it is a rapid into the material.
     let again = "G0 X0. Y80.\nG1 Z-2. F300.\nG0 Z5.\nG0 Z-2.";
     assert!(proven(&on_bed, again, &[]).2);

@@ -161,7 +161,9 @@ fn cut_along(field: &mut Field, tool: &Mounted, cutter: &Cutter, way: &Way<'_>) 
     field.in_pieces(true);
     let ends = way.ends.map(|stance| pose(&stance.joints));
     for end in &ends {
-        taken.volume += field.remove(cutter, end);
+        // Between the ends of a curve leads no way that anything could be across.
+        let goes = if way.interpolation.is_curved() { [*end; 2] } else { ends };
+        taken += field.cut_standing(cutter, goes, end, None);
     }
     // On an arc about the tool axis the tip goes evenly from the height of one end to that of the other.
     let level = tool.is_level(way);

@@ -247,6 +247,9 @@ impl Search<'_> {
             if nearer {
                 self.at = Some(*block);
                 self.best = found;
+                if found.at_most <= 0.0 {
+                    self.best.points = meeting(&self.pieces[place], &body);
+                }
             }
             self.best.at_least = at_least;
         }

@@ -94,6 +94,19 @@ fn the_tool_is_retracted_as_high_as_bodies_ask_for() {
     }
 }
 
+/// Limits between axes do not stand in the way: the program is refused where one is passed on a way.
+#[test]
+fn ways_across_keep_limits_between_axes() {
+    let facets = root().join(sample("facets.apt"));
+    let facets = facets.to_str().unwrap();
+    let limit = "[[limit]]\nkeep = \"Z > -320 + 4 * abs(A)\"\n";
+    let folder = folder("ac-trunnion", &format!("rapid_axes = \"together\"\n{limit}"));
+    for (option, key) in [(LOW, "low"), (LINK, "past")] {
+        let (program, summary) = made(&folder, facets, &option);
+        assert_eq!(summary["ways_across"][key], 3, "{summary}\n{program}");
+    }
+}
+
 /// Two facets that lean to either side, apart in X.
 fn two_sides() -> String {
     let (sine, cosine) = libm::sincos(30f64.to_radians());
@@ -268,6 +281,96 @@ fn rapids_of_one_orientation_are_as_low_as_the_part_lets_them() {
         // One line more says of which length the tool must be.
         assert!(low <= ever + 1, "{low} {ever}");
     }
+}
+
+/// Two cuts of an upright tool, with these records between, on a machine that is `extends` of the library.
+fn upright(extends: &str, between: &str, more: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = format!(
+        "extends = \"{extends}\"\nname = \"upright\"\n[workpiece]\nmount = [0, 0, 60]\n\
+         [stock]\nblock = [[-60, -30, 0], [60, 30, 20]]\n\
+         [tools.1]\nlength = 120\nholder = [[0, 32], [20, 32], [20, 20], [60, 18]]\ncutter = [[0, 5], [50, 5]]\n\
+         {more}[clearance]\nkeep = 1\n"
+    );
+    fs::write(folder.path().join("m.toml"), machine).unwrap();
+    let program = format!(
+        "TLDATA/MILL,10,0,120,0,0\nLOAD/TOOL,1\nSPINDL/RPM,6000,CLW\nRAPID\nGOTO/-40,0,80\nRAPID\nGOTO/-40,0,24\n\
+         FEDRAT/MMPM,800\nGOTO/-40,0,21\nGOTO/-20,0,21\n{between}RAPID\nGOTO/20,0,24\nFEDRAT/MMPM,800\n\
+         GOTO/20,0,21\nGOTO/40,0,21\nRAPID\nGOTO/40,0,80\nFINI\n"
+    );
+    fs::write(folder.path().join("p.cls"), program).unwrap();
+    folder
+}
+
+/// The rapids of a CL file between two cuts, and what may stand among them.
+const PLAIN: &str = "RAPID\nGOTO/-20,0,80\nRAPID\nGOTO/20,0,80\n";
+
+/// Records that move nothing, and a stop at a plane on the way up and down, stand in no link's way, on three axes as on five;
+/// the records come in their order, where the tool is off the part.
+#[test]
+fn records_and_planes_between_rapids_stand_in_no_way() {
+    let records =
+        "RAPID\nGOTO/-20,0,80\nCOOLNT/OFF\nPPRINT/NEXT ONE\nRAPID\nGOTO/20,0,80\nCOOLNT/FLOOD\n";
+    let planes =
+        "RAPID\nGOTO/-20,0,26\nRAPID\nGOTO/-20,0,80\nRAPID\nGOTO/20,0,80\nRAPID\nGOTO/20,0,50\n";
+    for machine in ["vmc", "ac-trunnion"] {
+        for between in [PLAIN, records, planes] {
+            let folder = upright(machine, between, "");
+            let (program, summary) = made(&folder, "p.cls", &LINK);
+            let ways = &summary["ways_across"];
+            assert_eq!((&ways["rapids"], &ways["as_ever"]), (&1.into(), &0.into()), "{program}");
+            // Neither cut is as high as the plane that the CL file crosses at: over the part or in axis positions.
+            let cuts: Vec<&str> =
+                program.lines().skip_while(|line| !line.contains("G1 ")).collect();
+            let between = cuts[1..].iter().take_while(|line| !line.contains("G1 "));
+            let high = between.filter(|line| line.contains("Z80") || line.contains("Z-180"));
+            assert_eq!(high.count(), 0, "{program}");
+            if program.contains("NEXT ONE") {
+                let at = |what: &str| program.lines().position(|line| line.contains(what)).unwrap();
+                let across = at("X20.000");
+                assert!(at("NEXT ONE") < across, "{program}");
+            }
+        }
+    }
+}
+
+/// What is not linked is told with its reason.
+#[test]
+fn ways_that_are_as_ever_are_told_by_their_reasons() {
+    let reason = |between: &str, more: &str| {
+        let folder = upright("vmc", between, more);
+        let (_, summary) = made(&folder, "p.cls", &LINK);
+        let ways = summary["ways_across"].clone();
+        assert_eq!(ways["rapids"], 0, "{ways}");
+        ways["why"].clone()
+    };
+    let stop = "RAPID\nGOTO/-20,0,80\nDELAY/2\nRAPID\nGOTO/20,0,80\n";
+    assert_eq!(reason(stop, ""), serde_json::json!({ "stops": 1 }));
+    let level = "RAPID\nGOTO/-20,0,24\nRAPID\nGOTO/20,0,24.5\n";
+    assert_eq!(reason(level, ""), serde_json::json!({ "low": 1 }));
+    let wall = "[fixture.wall]\nblock = [[-4, -30, 60], [4, 30, 138]]\n";
+    assert_eq!(reason(PLAIN, wall), serde_json::json!({ "not_quicker": 1 }));
+    let folder = upright("vmc", PLAIN, wall);
+    let run =
+        post_in(folder.path(), &[&["-m", "m.toml", "p.cls", "-o", "p.nc"], &LINK[..]].concat());
+    assert_contains(&(run.out + &run.err), &["1 as ever (1: no quicker one is proven clear)"]);
+}
+
+/// A machine whose accelerations are not known has ways that are quicker by its feeds.
+#[test]
+fn without_accelerations_feeds_tell_which_way_is_quicker() {
+    let folder = upright("vmc", PLAIN, "");
+    let file = folder.path().join("m.toml");
+    let library = fs::read_to_string(root().join("machines/vmc.toml")).unwrap();
+    let bare: String = library
+        .lines()
+        .filter(|line| !line.starts_with("max_accel"))
+        .fold(String::new(), |text, line| text + line + "\n");
+    fs::write(folder.path().join("bare.toml"), bare).unwrap();
+    let machine = fs::read_to_string(&file).unwrap().replace("\"vmc\"", "\"bare.toml\"");
+    fs::write(&file, machine).unwrap();
+    let (_, summary) = made(&folder, "p.cls", &LINK);
+    assert_eq!(summary["ways_across"]["rapids"], 1, "{summary}");
 }
 
 /// A linked program that is verified without the option is told from one that goes astray.

@@ -245,7 +245,10 @@ fn ways_across(ways: &WaysAcross) -> Option<String> {
     let kinds = kinds.into_iter().filter(|(count, _)| *count > 0);
     let kinds: Vec<String> = kinds.map(|(count, how)| format!("{count} {how}")).collect();
     let saved = number(ways.saved_s, 1);
-    (!kinds.is_empty()).then(|| format!("{}; {saved} s less than as ever", kinds.join(", ")))
+    let why: Vec<String> =
+        ways.why.counts().map(|(_, meaning, count)| format!("{count}: {meaning}")).collect();
+    let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
+    (!kinds.is_empty()).then(|| format!("{}{why}; {saved} s less than as ever", kinds.join(", ")))
 }
 
 /// How long the program takes, and blocks that are slower than asked for.

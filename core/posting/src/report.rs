@@ -143,10 +143,71 @@ pub struct WaysAcross {
     pub past: u64,
     /// Runs of rapids between two cuts of one orientation that are lower than in the CL file.
     pub rapids: u64,
-    /// Over the machine file's retract: no quicker one was proven clear.
+    /// Over the machine file's retract, or as the CL file has them.
     pub as_ever: u64,
+    /// Why those are, and how many of them.
+    pub why: UnlinkedWays,
     /// What the others save, s, each of their pieces from rest to rest.
     pub saved_s: f64,
+}
+
+impl WaysAcross {
+    /// One more is as ever.
+    pub(crate) fn stays(&mut self, why: Unlinked) {
+        self.as_ever += 1;
+        self.why.0[why as usize] += 1;
+    }
+}
+
+/// Why a way between two cuts is as ever.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unlinked {
+    /// No quicker one is proven clear.
+    Slower,
+    /// The rapids of the CL file are as low as the cuts let them.
+    Low,
+    /// The tool turns in the rapids of the CL file, and is not retracted for it.
+    Turns,
+    /// The program stops there, or does what moves axes.
+    Stops,
+    /// The length of the tool is not known.
+    Length,
+    /// The machine retracts otherwise than by one axis alone (`leave`, several axes), or another head is in.
+    Machine,
+    /// No axis has a largest feed: which way is quicker is not known.
+    Feeds,
+}
+
+impl Unlinked {
+    /// All of them, with their keys in the summary and what they mean.
+    pub const ALL: [(Self, &'static str, &'static str); 7] = [
+        (Self::Slower, "not_quicker", "no quicker one is proven clear"),
+        (Self::Low, "low", "as low as the cuts"),
+        (Self::Turns, "turns", "the tool turns without a retract"),
+        (Self::Stops, "stops", "the program stops or moves axes there"),
+        (Self::Length, "no_length", "the tool's length is not known"),
+        (Self::Machine, "machine", "the machine retracts another way"),
+        (Self::Feeds, "no_feeds", "axes have no max_feed"),
+    ];
+}
+
+/// Ways that are as ever, by the reason.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct UnlinkedWays([u64; Unlinked::ALL.len()]);
+
+impl UnlinkedWays {
+    /// Reasons that there are, each with its key, its meaning and how many ways.
+    pub fn counts(&self) -> impl Iterator<Item = (&'static str, &'static str, u64)> {
+        let all =
+            Unlinked::ALL.iter().map(|(why, key, meaning)| (*key, *meaning, self.0[*why as usize]));
+        all.filter(|(.., count)| *count > 0)
+    }
+}
+
+impl Serialize for UnlinkedWays {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_map(self.counts().map(|(key, _, count)| (key, count)))
+    }
 }
 
 /// A deviation and where it stands.

@@ -6,6 +6,7 @@
 //! of the machine file. What is chosen here is proven once more of the program as it is written.
 
 use post_machine::axis_words::{self, unit_length};
+use post_machine::dependent_limit::DependentLimit;
 use post_machine::description::{Axis, Machine};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Solver};
@@ -17,7 +18,7 @@ use crate::configuration::{
     BodyClearance, ClearTool, Contact, DriveLimits, TrialWay, TrialWayKind,
 };
 use crate::program::{Command, ToolChange};
-use crate::report::WaysAcross;
+use crate::report::{Unlinked, WaysAcross};
 use crate::stream::StreamItem;
 
 /// Elements that are held back at most; of a longer pause nothing is shortened.
@@ -78,6 +79,8 @@ pub(super) struct Trials<'t> {
     bodies: &'t mut dyn BodyClearance,
     solver: &'t Solver,
     drives: &'t DriveLimits,
+    /// What must hold between axes.
+    limits: &'t [DependentLimit],
 }
 
 /// From where the tool departs to the next first position.
@@ -136,9 +139,19 @@ impl Trials<'_> {
         })
     }
 
-    /// Nothing is hit on a piece of a way that is chosen here, or at a place of it.
+    /// Nothing is hit on a piece of a way that is chosen here, or at a place of it, and what must hold between axes does.
     pub(super) fn goes(&mut self, from: &Joints, to: &Joints) -> bool {
-        self.contact_of(from, to, TrialWayKind::Across).is_none()
+        self.keeps_limits(&[*from, *to])
+            && self.contact_of(from, to, TrialWayKind::Across).is_none()
+    }
+
+    /// What must hold between axes does all along a way, each axis of a piece for itself: so the program is held to it.
+    fn keeps_limits(&self, places: &[Joints]) -> bool {
+        let keeps = |limit: &DependentLimit| {
+            let mut ways = places.windows(2);
+            ways.all(|ends| limit.passed_by_each([&ends[0], &ends[1]]).is_none())
+        };
+        self.limits.iter().all(keeps)
     }
 
     /// The time of a way from rest to rest at each place, s.
@@ -176,13 +189,14 @@ impl<'a> AcrossChoice<'a> {
     /// Whether ways are clear for the tool in the spindle; none where it is not known how long it is.
     pub(super) fn trials<'t>(
         &'t mut self,
-        machine: &Machine,
+        machine: &'t Machine,
         solver: &'t Solver,
     ) -> Option<Trials<'t>> {
         self.equip(machine, solver).then_some(Trials {
             bodies: &mut *self.bodies,
             solver,
             drives: &self.drives,
+            limits: &machine.limits,
         })
     }
 
@@ -190,6 +204,11 @@ impl<'a> AcrossChoice<'a> {
     pub(super) fn lowered(&mut self, saves: f64) {
         self.found.rapids += 1;
         self.found.saved_s += saves;
+    }
+
+    /// A way between cuts is no other than ever.
+    pub(super) fn stays(&mut self, why: Unlinked) {
+        self.found.stays(why);
     }
 
     /// The tool has departed from `joints`.
@@ -222,8 +241,8 @@ impl<'a> AcrossChoice<'a> {
                 | Command::Leave
                 | Command::Retract { forgets: false }
         );
-        if !passes {
-            self.departed = None;
+        if !passes && self.departed.take().is_some() && !matches!(command, Command::Tool(_)) {
+            self.stays(Unlinked::Stops);
         }
     }
 
@@ -290,16 +309,20 @@ impl<'a> BlockStage<'a> {
         };
         if let Some(from) = &across.departed.take() {
             let equipped = across.equip(self.machine, placer.solver());
-            let best = self.shortened().filter(|_| equipped).and_then(|(depth, highest)| {
-                let crossing = Crossing { line, placer, from, node, depth, highest };
-                self.way_across(&mut across, &crossing)
-            });
+            let best = match self.shortened() {
+                None => Err(Unlinked::Machine),
+                Some(_) if !equipped => Err(Unlinked::Length),
+                Some((depth, highest)) => {
+                    let crossing = Crossing { line, placer, from, node, depth, highest };
+                    self.way_across(&mut across, &crossing)
+                }
+            };
             match best {
-                Some(best) => {
+                Ok(best) => {
                     self.lowered = Some(best.entry);
                     across.chosen = Some(best.way);
                 }
-                None => across.found.as_ever += 1,
+                Err(why) => across.stays(why),
             }
         }
         self.across = Some(across);
@@ -313,22 +336,25 @@ impl<'a> BlockStage<'a> {
         };
         let plain = machine.frame.leave.is_none()
             && machine.frame.aside.is_empty()
-            && machine.limits.is_empty()
             && !machine.is_opened()
             && machine.control_point.along == 0.0
             && std::ptr::eq(machine, self.base);
         (plain && axis_words::depth(machine) == Some(retract.0)).then_some(retract)
     }
 
-    /// The quickest way that is proven clear: none where that is the one over the retract, or none is found.
+    /// The quickest way that is proven clear.
+    ///
+    /// # Errors
+    /// Why it is the one over the retract.
     fn way_across(
         &mut self,
         across: &mut AcrossChoice<'_>,
         crossing: &Crossing<'_>,
-    ) -> Option<Candidate> {
+    ) -> Result<Candidate, Unlinked> {
         let AcrossChoice { bodies, drives, links, found, .. } = across;
         let solver = crossing.placer.solver();
-        let mut trials = Trials { bodies: &mut **bodies, solver, drives };
+        let limits = &self.machine.limits;
+        let mut trials = Trials { bodies: &mut **bodies, solver, drives, limits };
         let ever = self.over(crossing, crossing.highest);
         let seconds = trials.seconds(&ever);
         let low = self.low_way(&mut trials, crossing);
@@ -352,9 +378,10 @@ impl<'a> BlockStage<'a> {
             Some(_) => found.past += 1,
             None => found.low += u64::from(low.is_some()),
         }
-        let best = past.or(low)?;
+        let why = if seconds > 0.0 { Unlinked::Slower } else { Unlinked::Feeds };
+        let best = past.or(low).ok_or(why)?;
         found.saved_s += seconds - best.seconds;
-        Some(best)
+        Ok(best)
     }
 
     /// No axis has index positions between which it stands nowhere, or is shown over a turn, of which the control takes either
@@ -413,7 +440,7 @@ impl<'a> BlockStage<'a> {
             }
             let at = highest + (height * step * up - axis.reading(highest));
             let places = self.over(crossing, at);
-            if trials.own_contact(&places).is_none() {
+            if trials.keeps_limits(&places) && trials.own_contact(&places).is_none() {
                 let way = WayAcross { retract: (depth, at), through: Vec::new() };
                 best = Some(Candidate { way, entry: at, seconds: trials.seconds(&places) });
                 high = height - 1.0;
@@ -432,14 +459,16 @@ impl<'a> BlockStage<'a> {
             let mut left = *from;
             left[depth] = crossing.drawn_back(from[depth], *by)?;
             let leaves = trials.goes(&left, &left)
+                && trials.keeps_limits(&[*from, left])
                 && trials.contact(&[*from, left], TrialWayKind::Across).is_none();
             leaves.then_some(left)
         })?;
         let (entry, approach) = DRAWN_BACK.iter().find_map(|by| {
             let height = crossing.drawn_back(node.trace.joints[depth], *by)?;
             let approach = self.approach(crossing, height);
-            let comes =
-                trials.goes(&approach[0], &approach[0]) && trials.comes_down(&approach).is_none();
+            let comes = trials.goes(&approach[0], &approach[0])
+                && trials.keeps_limits(&approach)
+                && trials.comes_down(&approach).is_none();
             comes.then_some((height, approach))
         })?;
         let ends = [&left, &approach[0]];

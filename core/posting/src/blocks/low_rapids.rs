@@ -1,23 +1,22 @@
 //! Rapids of the CL file between two cuts of one orientation, as low as bodies leave them.
 //!
 //! A CAM system draws the tool back to a height of its own between any two cuts, across there, and down. Where the way across
-//! is proven clear lower, the tool leaves the first piece of these rapids earlier and comes to the last one later: no piece
-//! leads elsewhere but the one across.
+//! is proven clear lower, the tool leaves the rapids that lead up earlier and comes to those that lead down later: no piece
+//! leads elsewhere but the one across. Records that move nothing may stand between them: those of the way that is left out
+//! are carried out where it is left.
 
 use post_machine::kinematics::Joints;
 
 use super::across::AcrossChoice;
 use super::{BlockSink, BlockStage, TURN};
-use crate::accuracy::{PathNode, Placer};
+use crate::accuracy::PathNode;
 use crate::configuration::{ChosenPoint, pose};
-use crate::program::MoveFeed;
+use crate::program::{Command, MoveFeed};
+use crate::report::Unlinked;
 use crate::stream::StreamItem;
 
 /// Rapids that are held back at most; of a longer run nothing is shortened.
 const MOST_HELD: usize = 64;
-
-/// The fewest of a run whose way across can be lower: up, and across and down at once.
-const LEAST_HELD: usize = 2;
 
 /// Heights that are tried at most.
 const TRIALS: u32 = 8;
@@ -25,84 +24,170 @@ const TRIALS: u32 = 8;
 /// A way that is lower by less is not worth it, and heights are told apart no closer, mm.
 const WORTH: f64 = 1.0;
 
-/// Rapids that wait for the next cut.
+/// Rapids that wait for the next cut, and records between them.
 #[derive(Debug, Default)]
 pub(super) struct WaitingRapids {
     /// The point of the cut that they begin at.
     from: Option<ChosenPoint>,
-    held: Vec<ChosenPoint>,
+    held: Vec<StreamItem<ChosenPoint>>,
+}
+
+/// Whether the rapids before a cut wait for it.
+enum Waits {
+    /// They go on.
+    On,
+    /// They end, by a cut or what else comes.
+    No,
+    /// They end, and lead to no cut from which they could be lower.
+    Never(Unlinked),
 }
 
 impl WaitingRapids {
     /// Line of the first of them.
     pub(super) fn first_line(&self) -> Option<u64> {
-        self.held.first().map(|point| point.line)
+        self.held.first().map(StreamItem::line)
     }
 
-    /// A rapid goes on as the tool stands at the cut.
-    fn takes(&self, point: &ChosenPoint) -> bool {
-        let plain = point.arrives && point.rewind.is_none() && !point.changed && !point.eased;
-        let alike = |from: &ChosenPoint| {
-            let (from, to) = (&from.motion, &point.motion);
-            (from.axis - to.axis).norm() + (from.edge - to.edge).norm() < TURN
+    /// The rapids among them.
+    fn points(&self) -> impl Iterator<Item = &ChosenPoint> {
+        self.held.iter().filter_map(|element| match element {
+            StreamItem::Point(point) => Some(point),
+            _ => None,
+        })
+    }
+
+    /// Whether an element goes on as the tool stands at the cut, or moves nothing.
+    fn takes(&self, element: &StreamItem<ChosenPoint>) -> Waits {
+        let Some(from) = &self.from else {
+            return Waits::No;
         };
-        point.motion.pace == MoveFeed::Rapid
-            && plain
-            && self.held.len() < MOST_HELD
-            && self.from.as_ref().is_some_and(|from| from.setting == point.setting && alike(from))
+        let full = self.held.len() >= MOST_HELD;
+        match element {
+            StreamItem::Command { command, .. } if moves_nothing(command) && !full => Waits::On,
+            StreamItem::Command { command, .. } if command.leaves() => Waits::No,
+            StreamItem::Command { .. } if self.points().next().is_some() => {
+                Waits::Never(Unlinked::Stops)
+            }
+            StreamItem::Point(point) if point.motion.pace == MoveFeed::Rapid => {
+                let plain = point.arrives && point.rewind.is_none() && !point.changed;
+                let (one, other) = (&from.motion, &point.motion);
+                let turn = (one.axis - other.axis).norm() + (one.edge - other.edge).norm();
+                match turn < TURN && from.setting == point.setting {
+                    false => Waits::Never(Unlinked::Turns),
+                    true if plain && !point.eased && !full => Waits::On,
+                    true => Waits::Never(Unlinked::Stops),
+                }
+            }
+            _ => Waits::No,
+        }
     }
 }
 
-/// A run of rapids, from the point of the cut that they begin at to where the next cut begins.
-struct RapidRun<'r> {
-    from: &'r ChosenPoint,
-    points: &'r [ChosenPoint],
+/// A record that moves nothing, and at which the tool may stand anywhere off the part.
+fn moves_nothing(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Operation(_)
+            | Command::OperationEnd
+            | Command::Comment(_)
+            | Command::Message(_)
+            | Command::Coolant(_)
+            | Command::Spindle(_)
+            | Command::Preselect(_)
+    )
+}
+
+/// A run of rapids from the point of the cut that they begin at to where the next cut begins: that point and theirs.
+struct RapidRun<'r>(Vec<&'r ChosenPoint>);
+
+/// A lower way of a run: what is left out of it, and what is put in there.
+struct LowWay {
+    /// The first and the last place that are left out.
+    left_out: [usize; 2],
+    /// Where the way before them is left.
+    leaves: ChosenPoint,
+    /// Where the way behind them is come to; none where that is the place there.
+    comes: Option<ChosenPoint>,
 }
 
 impl RapidRun<'_> {
     /// How high a point is over where the cut ended, mm along the tool axis.
-    fn height(&self, point: &ChosenPoint) -> f64 {
-        (point.motion.tip - self.from.motion.tip).dot(&self.from.motion.axis)
+    fn height(&self, place: usize) -> f64 {
+        let from = &self.0[0].motion;
+        (self.0[place].motion.tip - from.tip).dot(&from.axis)
+    }
+
+    /// The places between which the way is as high as it gets: up to the first it goes up, and down from the second.
+    fn top(&self) -> [usize; 2] {
+        let last = self.0.len() - 1;
+        let up = (0..last).find(|place| self.height(place + 1) < self.height(*place));
+        let down = (1..=last).rev().find(|place| self.height(place - 1) < self.height(*place));
+        [up.unwrap_or(last), down.unwrap_or(0)]
     }
 
     /// The heights between which the way across may lie, mm: no lower than the cuts, and the height of the CL file. None
     /// where it does not draw the tool back from the one and bring it down to the other.
     fn heights(&self) -> Option<[f64; 2]> {
-        let [first, .., last] = self.points else {
-            return None;
-        };
-        let over = self.comes_over().map_or(f64::INFINITY, |over| self.height(over));
-        let (least, most) = (self.height(last).max(0.0), self.height(first).min(over));
+        let [up, down] = self.top();
+        let least = self.height(self.0.len() - 1).max(0.0);
+        let most = self.height(up).min(self.height(down));
         (most - least > WORTH).then_some([least, most])
     }
 
-    /// From where the last piece comes down; none where it leads across as well.
-    fn comes_over(&self) -> Option<&ChosenPoint> {
-        match self.points {
-            [_, .., over, _] => Some(over),
-            _ => None,
+    /// The run with the way across at `height`. Where it goes across and down at once it is left for where that ends.
+    fn across(&self, height: f64) -> Option<LowWay> {
+        let [up, down] = self.top();
+        let last = self.0.len() - 1;
+        let leaves = (1..=up).find(|place| self.height(*place) >= height)?;
+        let comes = (down..last).rev().find(|place| self.height(*place) >= height)?;
+        if comes < leaves {
+            return None;
         }
+        Some(LowWay {
+            left_out: [leaves, comes],
+            leaves: self.between([leaves - 1, leaves], height),
+            comes: (comes > leaves).then(|| self.between([comes + 1, comes], height)),
+        })
     }
 
-    /// The points of the run with the way across at `height`: at which the first piece is left, at which the last one is
-    /// come to, and where it ends.
-    fn across(&self, height: f64) -> Option<Vec<ChosenPoint>> {
-        let [first, .., last] = self.points else {
-            return None;
-        };
-        let mut points = vec![self.between([self.from, first], height)];
-        points.extend(self.comes_over().map(|over| self.between([last, over], height)));
-        points.push(last.clone());
-        Some(points)
+    /// The points of the lower way, that of the cut the first.
+    fn lower<'w>(&'w self, way: &'w LowWay) -> impl Iterator<Item = &'w ChosenPoint> {
+        let [first, last] = way.left_out;
+        let before = self.0[..first].iter().copied();
+        let behind = self.0[last + 1..].iter().copied();
+        before.chain([&way.leaves]).chain(&way.comes).chain(behind)
     }
 
     /// The second of two points, moved to a height between them on the way from the one to the other.
-    fn between(&self, [low, high]: [&ChosenPoint; 2], height: f64) -> ChosenPoint {
-        let [least, most] = [low, high].map(|point| self.height(point));
+    fn between(&self, [low, high]: [usize; 2], height: f64) -> ChosenPoint {
+        let [least, most] = [low, high].map(|place| self.height(place));
         let share = ((height - least) / (most - least)).clamp(0.0, 1.0);
+        let [low, high] = [low, high].map(|place| self.0[place]);
         let mut at = high.clone();
         at.motion.tip = low.motion.tip + (high.motion.tip - low.motion.tip) * share;
         at
+    }
+}
+
+impl LowWay {
+    /// The elements of the run in their order: what stood on the way that is left out comes where that is left.
+    fn among(self, held: Vec<StreamItem<ChosenPoint>>) -> Vec<StreamItem<ChosenPoint>> {
+        let Self { left_out: [first, last], leaves, comes } = self;
+        let (mut leaves, mut comes) = (Some(leaves), comes);
+        let mut place = 0;
+        let element = |element: StreamItem<ChosenPoint>| {
+            if !matches!(element, StreamItem::Point(_)) {
+                return Some(element);
+            }
+            place += 1;
+            match place {
+                _ if place < first || place > last => Some(element),
+                _ if place == first => leaves.take().map(StreamItem::Point),
+                _ if place == last => comes.take().map(StreamItem::Point),
+                _ => None,
+            }
+        };
+        held.into_iter().filter_map(element).collect()
     }
 }
 
@@ -128,25 +213,27 @@ impl BlockStage<'_> {
     ) {
         let mut ready = Vec::with_capacity(elements.len());
         for element in elements {
-            let point = match element {
-                StreamItem::Point(point) => Some(point),
-                _ => None,
-            };
-            if let Some(point) = point.filter(|point| self.rapids.takes(point)) {
-                self.rapids.held.push(point.clone());
+            let waits = self.rapids.takes(element);
+            if let Waits::On = waits {
+                self.rapids.held.push(element.clone());
                 continue;
             }
             let cut = end_of_cut(element);
             let WaitingRapids { from, held } = std::mem::take(&mut self.rapids);
-            let shortened = match (&from, cut) {
-                (Some(from), Some(_)) if held.len() >= LEAST_HELD => {
-                    // What solves the points is known behind all that comes before.
-                    self.take_each(&std::mem::take(&mut ready), out);
-                    self.lower(&RapidRun { from, points: &held })
-                }
-                _ => None,
-            };
-            ready.extend(shortened.unwrap_or(held).into_iter().map(StreamItem::Point));
+            let mut low = None;
+            let goes = held.iter().any(|element| matches!(element, StreamItem::Point(_)));
+            if let (Some(from), Some(_), true) = (&from, cut, goes) {
+                // What solves the points is known behind all that comes before.
+                self.take_each(&std::mem::take(&mut ready), out);
+                low = self.lower(from, &held);
+            }
+            if let (Waits::Never(why), Some(across)) = (waits, &mut self.across) {
+                across.stays(why);
+            }
+            match low {
+                Some(low) => ready.extend(low.among(held)),
+                None => ready.extend(held),
+            }
             self.rapids.from = cut.cloned();
             ready.push(element.clone());
         }
@@ -156,53 +243,55 @@ impl BlockStage<'_> {
     /// The file ends, and no cut comes: what waits is as the CL file has it.
     pub(super) fn end_rapids(&mut self, out: &mut BlockSink<'_>) {
         let held = std::mem::take(&mut self.rapids).held;
-        let held: Vec<_> = held.into_iter().map(StreamItem::Point).collect();
         self.take_each(&held, out);
     }
 
-    /// The points of a run whose way across is lower: none where none is proven clear, or none is quicker.
-    fn lower(&mut self, run: &RapidRun<'_>) -> Option<Vec<ChosenPoint>> {
-        let heights = run.heights()?;
-        let placer = self.placer.clone()?;
-        let known = std::ptr::eq(self.machine, self.base)
-            && !self.machine.is_opened()
-            && self.machine.control_point.along == 0.0
-            && !self.compensating;
-        if !known {
-            return None;
-        }
+    /// The lower way between two cuts: none where none is proven clear, or none is quicker.
+    fn lower(&mut self, from: &ChosenPoint, held: &[StreamItem<ChosenPoint>]) -> Option<LowWay> {
+        let points = held.iter().filter_map(|element| match element {
+            StreamItem::Point(point) => Some(point),
+            _ => None,
+        });
+        let run = RapidRun([from].into_iter().chain(points).collect());
         let mut across = self.across.take()?;
-        let found = self.lowest(&mut across, &placer, run, heights);
+        let found = self.lowest(&mut across, &run).map_err(|why| across.stays(why));
         self.across = Some(across);
-        found
+        found.ok()
     }
 
     fn lowest(
         &self,
         across: &mut AcrossChoice<'_>,
-        placer: &Placer,
         run: &RapidRun<'_>,
-        [least, most]: [f64; 2],
-    ) -> Option<Vec<ChosenPoint>> {
+    ) -> Result<LowWay, Unlinked> {
+        let [least, most] = run.heights().ok_or(Unlinked::Low)?;
+        let placer = self.placer.clone().ok_or(Unlinked::Machine)?;
+        let known = std::ptr::eq(self.machine, self.base)
+            && !self.machine.is_opened()
+            && self.machine.control_point.along == 0.0
+            && !self.compensating;
+        if !known {
+            return Err(Unlinked::Machine);
+        }
         let place = |point: &ChosenPoint| -> Option<Joints> {
             let placed = placer.settled(pose(&point.motion), 1.0, self.planes.standing(point));
             placed.ok().map(|node: PathNode| node.trace.joints)
         };
-        let way = |points: &[ChosenPoint]| -> Option<Vec<Joints>> {
-            [run.from].into_iter().chain(points).map(place).collect()
-        };
-        let mut trials = across.trials(self.machine, placer.solver())?;
-        let ever = trials.seconds(&way(run.points)?);
+        let mut trials = across.trials(self.machine, placer.solver()).ok_or(Unlinked::Length)?;
+        let ever: Option<Vec<Joints>> = run.0.iter().copied().map(place).collect();
+        let ever = trials.seconds(&ever.ok_or(Unlinked::Slower)?);
         let (mut low, mut high) = (least, most);
-        let mut best: Option<(Vec<ChosenPoint>, f64)> = None;
+        let mut best: Option<(LowWay, f64)> = None;
         let mut height = least;
         for _ in 0..TRIALS {
-            let points = run.across(height)?;
-            let places = way(&points)?;
-            match trials.goes(&places[1], &places[2]) {
+            let way = run.across(height).ok_or(Unlinked::Slower)?;
+            let places: Option<Vec<Joints>> = run.lower(&way).map(place).collect();
+            let places = places.ok_or(Unlinked::Slower)?;
+            let [leaves, _] = way.left_out;
+            match trials.goes(&places[leaves], &places[leaves + 1]) {
                 true => {
                     let seconds = trials.seconds(&places);
-                    best = Some((points, seconds));
+                    best = Some((way, seconds));
                     high = height;
                 }
                 false => low = height,
@@ -212,8 +301,12 @@ impl BlockStage<'_> {
             }
             height = 0.5 * (low + high);
         }
-        let (points, seconds) = best.filter(|(_, seconds)| *seconds < ever)?;
+        if ever <= 0.0 {
+            return Err(Unlinked::Feeds);
+        }
+        let best = best.filter(|(_, seconds)| *seconds < ever);
+        let (way, seconds) = best.ok_or(Unlinked::Slower)?;
         across.lowered(ever - seconds);
-        Some(points)
+        Ok(way)
     }
 }

@@ -123,6 +123,9 @@ fn rest_to_rest(way: f64, [velocity, acceleration, jerk]: [f64; 3]) -> f64 {
     if way == 0.0 {
         return 0.0;
     }
+    if acceleration.is_infinite() && jerk.is_infinite() {
+        return way / velocity;
+    }
     // Times over which the jerk is applied, and over which there is any acceleration, while the velocity is reached.
     let ramp = |velocity: f64| match velocity * jerk < acceleration * acceleration {
         true => 2.0 * libm::sqrt(velocity / jerk),
@@ -261,6 +264,9 @@ mod tests {
         let endless = [f64::INFINITY, 600.0, f64::INFINITY];
         assert!((rest_to_rest(600.0, endless) - 2.0).abs() < 1e-12);
         assert_eq!(rest_to_rest(0.0, limits), 0.0);
+        let free = f64::INFINITY;
+        assert_eq!(rest_to_rest(60.0, [30.0, free, free]), 2.0);
+        assert_eq!(rest_to_rest(60.0, [free; 3]), 0.0);
     }
 
     fn drives() -> DriveLimits {

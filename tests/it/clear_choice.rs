@@ -111,15 +111,39 @@ fn where_every_solution_hits_that_is_said() {
     assert_contains(&said, &["no solution was found with which plate stays clear of"]);
 }
 
-/// An arm on the table that reaches into what stands in front of it with one solution, at one end of the cut, and into what
-/// stands beside it with the other, at the other end: the tool is drawn back between them.
+/// The other solution is beyond travel, which is said, and not that none stays clear.
 #[test]
-fn a_cut_that_hits_with_either_solution_is_divided() {
+fn another_solution_that_travel_forbids_is_told_so() {
+    let at = |lean: f64, x: f64, out: f64| {
+        let (sine, cosine) = libm::sincos(-f64::to_radians(lean));
+        let (y, z) = (-20.0 + out * sine, 52.0 + out * cosine);
+        format!("GOTO/{x:.4},{y:.4},{z:.4},0,{sine:.7},{cosine:.7}\n")
+    };
+    let mut moves =
+        format!("RAPID\n{}RAPID\n{}FEDRAT/MMPM,800\n", at(5.0, -60.0, 60.0), at(5.0, -60.0, 0.0));
+    (6..=20).for_each(|lean| moves.push_str(&at(f64::from(lean), f64::from(lean) * 3.0, 0.0)));
+    let said = |least: f64| {
+        let folder = job(&format!("{MACHINE}[axis.A]\ntravel = [{least}, 30]\n"), &moves);
+        let (_, said, hits) = made(&folder, &CHOOSE);
+        assert!(hits.is_some());
+        assert_contains(&said, &["plate does not stay clear of setter (at "]);
+        assert!(!said.contains("no solution was found"), "{said}");
+        said
+    };
+    let there = ["the other solution is beyond travel: A -", "and it ends at -6.5"];
+    assert_contains(&said(-6.5), &there);
+    let later = ["with another solution it does (C", "but the path does not come through with it"];
+    assert_contains(&said(-10.0), &later);
+}
+
+/// An arm on the table, what stands in front of it and beside it, and a cut all around that hits the one with one solution at
+/// one end, and the other with the other at the other end.
+fn between_two() -> (String, String) {
     let machine = MACHINE.replace(
         "cylinder = [[0, 0, 0], [0, 0, 20]]\nradius = 140",
         "block = [[-30, -140, 0], [30, 0, 20]]",
     );
-    let beside = "[rewind]\ndistance = 100\n[fixture.beside]\nblock = [[138, -60, -60], [200, 60, 90]]\non = \"b\"\n";
+    let beside = "[fixture.beside]\nblock = [[138, -60, -60], [200, 60, 90]]\non = \"b\"\n";
     let lean = 20f64.to_radians();
     let at = |turn: f64, out: f64| {
         let (sine, cosine) = libm::sincos(turn.to_radians());
@@ -131,11 +155,57 @@ fn a_cut_that_hits_with_either_solution_is_divided() {
     let mut moves = format!("RAPID\n{}RAPID\n{}FEDRAT/MMPM,800\n", at(0.0, 60.0), at(0.0, 0.0));
     (1..=90).for_each(|turn| moves.push_str(&at(f64::from(turn), 0.0)));
     moves.push_str(&format!("RAPID\n{}", at(90.0, 60.0)));
-    let folder = job(&format!("{machine}{beside}"), &moves);
+    (machine + beside, moves)
+}
+
+/// The tool is drawn back between them.
+#[test]
+fn a_cut_that_hits_with_either_solution_is_divided() {
+    let (machine, moves) = between_two();
+    let folder = job(&format!("{machine}[rewind]\ndistance = 100\n"), &moves);
     let (_, _, hits) = made(&folder, &[]);
     assert!(hits.is_some());
     let (program, said, hits) = made(&folder, &CHOOSE);
     assert_eq!(hits, None, "{program}{said}");
+}
+
+/// Where it cannot be, a solution that stays clear there is told with what it hits elsewhere.
+#[test]
+fn another_solution_that_hits_elsewhere_is_told_so() {
+    let (machine, moves) = between_two();
+    let machine =
+        machine.replace("[[138, -60, -60], [200, 60, 90]]", "[[-200, -60, -60], [-138, 60, 90]]");
+    let folder = job(&machine, &moves);
+    let (_, said, hits) = made(&folder, &CHOOSE);
+    assert!(hits.is_some());
+    assert_contains(
+        &said,
+        &[
+            "plate does not stay clear of",
+            "with another solution it does (",
+            "does not stay clear of",
+            "in line ",
+        ],
+    );
+    assert!(!said.contains("no solution was found"), "{said}");
+}
+
+/// `low_retracts` and `link` choose as `--clearance` does.
+#[test]
+fn ways_between_passes_choose_solutions_too() {
+    let stock = "[stock]\nblock = [[-50, -18, 20], [50, 18, 48]]\n";
+    let folder = job(&format!("{MACHINE}{stock}"), &facet(20.0, -1.0));
+    let (asked, _, _) = made(&folder, &["--clearance"]);
+    for way in ["clearance.low_retracts=true", "clearance.link=true"] {
+        let (program, said, hits) = made(&folder, &["--set", way]);
+        assert_eq!(hits, None);
+        assert_contains(&program, &["G0 A-20.000 C180.000"]);
+        assert_contains(&said, &["others are taken"]);
+        let turns = |program: &str| -> Vec<String> {
+            program.lines().filter(|line| line.contains("G0 A")).map(str::to_owned).collect()
+        };
+        assert_eq!(turns(&asked), turns(&program));
+    }
 }
 
 /// `--clearance` chooses and proves.

@@ -105,20 +105,16 @@ impl PostingPass<'_> {
         let opened = machine.with_part_anywhere();
         let machine = opened.as_ref().unwrap_or(machine);
         let mut told = Vec::new();
-        let chooses = keeps_clear || machine.clearance.choose;
+        let shortens = machine.clearance.shortens_ways();
+        let chooses = keeps_clear || machine.clearance.choose || shortens;
         let mut bodies = match chooses {
             true => Some(ChoiceBodies::of(machine, &mut told)?),
             false => None,
         };
-        let shortens = machine.clearance.shortens_ways();
         if let Some(finding) = without_stock(machine) {
             return Err(finding.into());
         }
-        let mut between = match (shortens, &bodies) {
-            (true, Some(bodies)) => Some(bodies.coarse()),
-            (true, None) => Some(ChoiceBodies::of(machine, &mut Vec::new())?.coarse()),
-            (false, _) => None,
-        };
+        let mut between = bodies.as_ref().filter(|_| shortens).map(ChoiceBodies::coarse);
         // Blocks are shown with the lines that they end on: whoever looks on waits for the text of each batch.
         let beside_text = threads > NonZeroUsize::MIN && beside.observer.is_none();
         let post = Post::new(machine, request, dialect, model, sink);

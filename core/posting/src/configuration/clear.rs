@@ -7,21 +7,28 @@
 //! What is looked at is the way between CL points; where the tool comes from the retract, how the axes turn there and the way
 //! straight down; and the way straight up. Nothing is proven by it: the program is, as it is written.
 
+use std::f64::consts::TAU;
 use std::fmt::Debug;
 
 use post_machine::axis_words;
+use post_machine::check::number;
 use post_machine::description::{Machine, Pole};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::kinematics::travel::OverTravel;
 use post_machine::kinematics::{Joints, Solver};
 
 use super::backtrace::Backtrace;
 use super::route::Route;
+use super::solution::both;
 use super::trellis::{ArrivalKind, Trellis, TrellisLayer, pose};
 use crate::accuracy::Placer;
 use crate::program::StraightMove;
 
 /// Points that wait at most to be decided: a pass is one choice.
 const LONGEST_PASS: usize = 20_000;
+
+/// Solutions whose axes differ by less are the same, mm and radians.
+const SAME: f64 = 1e-6;
 
 /// A tool whose axis is off the depth axis by no more leans not, as a cosine less than 1.
 const UPRIGHT: f64 = 1e-6;
@@ -90,6 +97,19 @@ pub(crate) struct BodyTrial<'a> {
 pub(super) struct Hit {
     line: u64,
     contact: Contact,
+    layer: usize,
+}
+
+/// Why no other solution is taken where a way hits something.
+enum NoOther {
+    /// None stays clear.
+    Clear,
+    /// Another one is beyond the travel of an axis.
+    Travel(OverTravel),
+    /// Another one that stays clear there, and with which something is hit elsewhere.
+    Hits(Joints, u64, [String; 2]),
+    /// Another one that stays clear there, and with which the path does not come through.
+    Through(Joints),
 }
 
 impl BodyTrial<'_> {
@@ -108,15 +128,30 @@ impl BodyTrial<'_> {
     ) -> Option<Contact> {
         let solver = placer.solver();
         let kind = match kind {
-            ArrivalKind::First => return self.comes_down(machine, solver, from, to),
+            ArrivalKind::First => {
+                let turns = self.turns(machine, solver, from, to);
+                return turns.or_else(|| self.comes_down(machine, solver, to));
+            }
             ArrivalKind::Rapid => TrialWayKind::Rapid,
             ArrivalKind::Cut => TrialWayKind::Cut,
         };
         self.bodies.contact(&TrialWay { solver, ends: [from, to], kind })
     }
 
-    /// What is hit while the axes turn where the tool is retracted, from how they stand at `from`, or on the way down to `to`.
-    fn comes_down(
+    /// What is hit where the axes stand on `joints`.
+    fn stands(&mut self, placer: &Placer, joints: &Joints) -> Option<Contact> {
+        let (solver, kind) = (placer.solver(), TrialWayKind::Cut);
+        self.bodies.contact(&TrialWay { solver, ends: [joints, joints], kind })
+    }
+
+    /// What is hit on the way down to a first position from where the tool is retracted.
+    fn comes_down(&mut self, machine: &Machine, solver: &Solver, to: &Joints) -> Option<Contact> {
+        let above = retracted(machine, solver, to);
+        self.bodies.contact(&TrialWay { solver, ends: [&above, to], kind: TrialWayKind::Rapid })
+    }
+
+    /// What is hit while the axes turn where the tool is retracted, from how they stand at `from` to how they do at `to`.
+    fn turns(
         &mut self,
         machine: &Machine,
         solver: &Solver,
@@ -134,9 +169,7 @@ impl BodyTrial<'_> {
             }
         }
         let turn = TrialWay { solver, ends: [&stands, &turned], kind: TrialWayKind::Turn };
-        let above = retracted(machine, solver, to);
-        let down = TrialWay { solver, ends: [&above, to], kind: TrialWayKind::Rapid };
-        self.bodies.contact(&turn).or_else(|| self.bodies.contact(&down))
+        self.bodies.contact(&turn)
     }
 
     /// What is hit while the tool is drawn back at a point, turned from one end to the other, and brought back.
@@ -206,14 +239,15 @@ impl<'a> Route<'a> {
     pub(super) fn first_hit(&mut self, way: &Backtrace) -> Option<Hit> {
         // Where each point has one solution nothing is to be chosen.
         let chooses = self.trellis.states.len() > self.trellis.layers.len();
-        chooses.then(|| self.hit_of(way)).flatten()
+        chooses.then(|| self.hit_of(way, true)).flatten()
     }
 
-    /// The first hit of a way.
-    fn hit_of(&mut self, way: &Backtrace) -> Option<Hit> {
+    /// The first hit of a way, from its beginning as far as its states are known; where the axes turn over the retract if
+    /// `turns` says so.
+    fn hit_of(&mut self, way: &Backtrace, turns: bool) -> Option<Hit> {
         let Self { trellis, settings, machine, judge, rewound, anchored, departs, near, .. } = self;
         let bodies = judge.bodies.as_mut()?;
-        let count = trellis.layers.len();
+        let count = way.states.len();
         for layer in usize::from(*anchored)..count {
             let at = &trellis.layers[layer];
             let from = layer.checked_sub(1).map_or(*near, |before| way.joints(trellis, before));
@@ -225,16 +259,83 @@ impl<'a> Route<'a> {
                 let ends = [rewind?, &stands];
                 bodies.rewinds(machine, placer, &at.motion, ends).into_iter().next()
             };
-            let arrives = bodies.arrives(machine, placer, at.kind, &from, to);
+            let arrives = match at.kind {
+                ArrivalKind::First if !turns => bodies.comes_down(machine, placer.solver(), to),
+                kind => bodies.arrives(machine, placer, kind, &from, to),
+            };
             let found = arrives.or_else(|| turned(bodies));
             if let Some(contact) = found {
-                return Some(Hit { line: at.line, contact });
+                return Some(Hit { line: at.line, contact, layer });
             }
         }
-        let last = trellis.layers.last().filter(|_| *departs)?;
+        let ends = *departs && count == trellis.layers.len();
+        let last = trellis.layers.last().filter(|_| ends)?;
         let joints = way.joints(trellis, count - 1);
         let contact = bodies.departs(machine, settings[last.setting].1.solver(), &joints)?;
-        Some(Hit { line: last.line, contact })
+        Some(Hit { line: last.line, contact, layer: count - 1 })
+    }
+
+    /// The cheapest way to the last point that comes by a state of a layer; none where none does.
+    fn through(&self, layer: usize, state: usize) -> Option<Backtrace> {
+        let trellis = &self.trellis;
+        let last = trellis.layers.last()?;
+        let mut ends: Vec<usize> = (last.first..last.first + last.count).collect();
+        ends.retain(|end| trellis.states[*end].cost.is_way());
+        ends.sort_by(|one, other| trellis.states[*one].cost.order(&trellis.states[*other].cost));
+        let ways = ends.into_iter().map(|end| {
+            let mut states = vec![end; trellis.layers.len()];
+            for layer in (1..states.len()).rev() {
+                states[layer - 1] = trellis.states[states[layer]].from;
+            }
+            Backtrace { states, eased: Vec::new() }
+        });
+        let mut ways = ways.filter(|way| way.states[layer] == state);
+        ways.next()
+    }
+
+    /// Why no other solution is taken where `way` has a hit.
+    fn no_other(&mut self, way: &Backtrace, hit: &Hit) -> NoOther {
+        let layer = self.trellis.layers[hit.layer].clone();
+        let placer = self.settings[layer.setting].1.clone();
+        let taken = way.joints(&self.trellis, hit.layer);
+        let mut stands = Vec::new();
+        let axes = &self.trellis.axes;
+        let target = pose(&layer.motion);
+        let found = axes.stands(placer.solver(), &target, &taken, &both, &mut stands);
+        let machine = self.machine;
+        let alike = |one: &Joints, other: &Joints| {
+            let mut all = machine.axes.iter().zip(one.iter().zip(other));
+            all.all(|(axis, (one, other))| {
+                let apart = one - other;
+                let turns = if axis.joint.rotary { TAU * libm::rint(apart / TAU) } else { 0.0 };
+                libm::fabs(apart - turns) < SAME
+            })
+        };
+        stands.retain(|stand| !alike(&stand.joints, &taken));
+        let beyond = found.ok().and_then(|found| found.over).filter(|_| stands.is_empty());
+        for stand in &stands {
+            let bodies = self.judge.bodies.as_mut();
+            if bodies.is_none_or(|bodies| bodies.stands(&placer, &stand.joints).is_some()) {
+                continue;
+            }
+            let mut states = layer.first..layer.first + layer.count;
+            let goes = states.find(|place| {
+                let state = &self.trellis.states[*place];
+                state.cost.is_way() && alike(&state.joints, &stand.joints)
+            });
+            let Some(state) = goes else {
+                return NoOther::Through(stand.joints);
+            };
+            let Some(other) = self.through(hit.layer, state) else {
+                return NoOther::Through(stand.joints);
+            };
+            if let Some(Hit { line, contact, layer }) = self.hit_of(&other, true)
+                && layer != hit.layer
+            {
+                return NoOther::Hits(stand.joints, line, contact.bodies);
+            }
+        }
+        beyond.map_or(NoOther::Clear, NoOther::Travel)
     }
 
     /// Looks for the way with the fewest hits in the place of one that has `hit`; gives the state that it ends in, which was
@@ -261,11 +362,18 @@ impl<'a> Route<'a> {
                 break;
             }
         }
-        let (line, told) = match self.hit_of(way) {
-            Some(left) => (left.line, hits_however(self.machine, &left.contact)),
-            None => (hit.line, chosen_clear(self.machine, &hit.contact)),
-        };
-        self.told.push((line, told));
+        // Between passes the tool goes another way than over the retract, which is looked for when it is known where it ends.
+        let turns = !self.machine.clearance.link;
+        match self.hit_of(way, turns) {
+            Some(left) => {
+                let why = self.no_other(way, &left);
+                self.told.push((left.line, hits_however(self.machine, &left.contact, &why)));
+            }
+            None if turns || self.hit_of(way, true).is_none() => {
+                self.told.push((hit.line, chosen_clear(self.machine, &hit.contact)));
+            }
+            None => {}
+        }
         ends
     }
 
@@ -339,12 +447,41 @@ fn chosen_clear(machine: &Machine, contact: &Contact) -> Diagnostic {
 }
 
 /// Whatever solutions are taken, something hits.
-fn hits_however(machine: &Machine, contact: &Contact) -> Diagnostic {
+fn hits_however(machine: &Machine, contact: &Contact, why: &NoOther) -> Diagnostic {
     let [one, other] = &contact.bodies;
-    let message = format!(
-        "no solution was found with which {one} stays clear of {other} (at {})",
-        machine.shown(&contact.joints)
-    );
-    Diagnostic::warning("clearance", message)
-        .help("another mount, fixture, tool or path; `post clearance` proves the program")
+    let at = machine.shown(&contact.joints);
+    let hits = format!("{one} does not stay clear of {other} (at {at})");
+    let (message, help) = match why {
+        NoOther::Clear => (
+            format!("no solution was found with which {one} stays clear of {other} (at {at})"),
+            "another mount, fixture, tool or path; `post clearance` proves the program",
+        ),
+        NoOther::Travel(over) => {
+            let axis = &machine.axes[over.joint];
+            let [value, limit] =
+                [over.value, over.limit].map(|value| number(axis.reading(value), 3));
+            let name = &axis.name;
+            (
+                format!(
+                    "{hits}, and the other solution is beyond travel: {name} {value}, and it ends at {limit}"
+                ),
+                "another mount or tool length brings it inside travel; else another fixture, tool or path",
+            )
+        }
+        NoOther::Hits(joints, line, [one, other]) => (
+            format!(
+                "{hits}; with another solution it does ({}), but {one} does not stay clear of {other} in line {line}",
+                machine.shown(joints)
+            ),
+            "another mount, fixture, tool or path; a path that is divided, with a retract between the parts, may take both solutions",
+        ),
+        NoOther::Through(joints) => (
+            format!(
+                "{hits}; with another solution it does ({}), but the path does not come through with it",
+                machine.shown(joints)
+            ),
+            "a path that is divided, with a retract between the parts, or [rewind] in the machine file lets the axes turn; else another mount",
+        ),
+    };
+    Diagnostic::warning("clearance", message).help(help)
 }

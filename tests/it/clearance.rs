@@ -138,8 +138,11 @@ fn a_rapid_keeps_off_the_part_where_it_begins_and_ends_farther() {
                 (past(3.1), true),
                 (near(0.5), true),
                 (near(-0.5), false),
-                // From near to the part on along it, no nearer.
-                ("G0 X0. Y0.\nG0 Z1.\nG0 X10.\nG0 Z50.\n".to_owned(), true),
+                // From near to the part on along it, no nearer: no two rapids may what one may not.
+                ("G0 X0. Y0.\nG0 Z1.\nG0 X10.\nG0 Z50.\n".to_owned(), false),
+                ("G0 X0. Y0.\nG0 Z2.\nG0 Z1.\nG0 Z50.\n".to_owned(), true),
+                // From a cut it leaves.
+                ("G0 X0. Y0.\nG0 Z1.\nG1 Z0.5 F500.\nG0 X10.\nG0 Z50.\n".to_owned(), true),
             ] {
                 let (said, found) = milled(&machine, 1, &program, &[]);
                 assert_eq!(found, clear, "{cut}{rules}{program}: {said}");

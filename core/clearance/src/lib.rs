@@ -7,6 +7,7 @@
 //! | [`distance`] | how far two shapes are apart: a proven lower bound, and an upper one with two points |
 //! | [`piece`] | a part of a way: between which axis values all axes stay on it |
 //! | [`pair`] | two bodies, and how far one can come nearer to the other on a piece |
+//! | [`beside`] | rapids that begin or end nearer to the stock than is kept |
 //! | `around` | how far anything is, in a box of axis values, from where it is in the middle of it |
 //! | `planes` | two planes that hold two bodies apart on all of a piece |
 //! | `mesh`, `inside`, `cloud` | parts of a mesh, and what they enclose; the farthest of many points along a direction |
@@ -20,6 +21,7 @@
 //! There is no input or output here, and memory does not grow with the program.
 
 mod around;
+pub mod beside;
 mod cloud;
 pub mod convex;
 pub mod distance;

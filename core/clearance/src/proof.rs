@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use post_machine::kinematics::{Joint, Joints};
 
 use crate::ALLOWANCE;
+use crate::beside::Beside;
 use crate::distance::{self, Apart};
 use crate::pair::View;
 use crate::piece::{Piece, Way};
@@ -104,6 +105,8 @@ struct Pair {
     /// In the frame of the body that `nearer` looks from.
     planes: Option<Planes>,
     guess: [usize; 2],
+    /// Of a cutter and the stock.
+    beside: Beside,
     /// Other rules than those of all pairs.
     rules: Option<Rules>,
     result: PairResult,
@@ -203,7 +206,10 @@ impl Proof {
 
     /// Another tool is in the spindle: what was known of distances does not hold any more.
     pub fn forget(&mut self) {
-        self.pairs.iter_mut().for_each(Pair::forget);
+        for pair in &mut self.pairs {
+            pair.forget();
+            pair.beside = Beside::default();
+        }
         self.sleep.end();
     }
 
@@ -240,6 +246,9 @@ impl Proof {
         for place in 0..count {
             let pair = &mut pairs[if sleeps { sleep.awake[place] } else { place }];
             let [one, other] = pair.result.bodies.map(|place| &bodies[place]);
+            if !motion.rapid {
+                pair.beside = Beside::default();
+            }
             if !looks(one, other) {
                 pair.forget();
                 continue;
@@ -295,7 +304,7 @@ struct Trial<'a> {
     bodies: &'a [Body],
     motion: &'a Move<'a>,
     keep: f64,
-    /// The distance is not kept where the motion begins or ends nearer: the bodies do not touch, and no more.
+    /// The distance is not kept where the motion leaves a cut or comes to one: the bodies do not touch, and no more.
     yields: bool,
     /// What is to be kept at most, at feed or at rapid, mm.
     most: f64,
@@ -328,6 +337,7 @@ impl Pair {
             room: None,
             planes: None,
             guess: [0; 2],
+            beside: Beside::default(),
             rules: None,
             result,
         }
@@ -397,6 +407,11 @@ impl Pair {
         };
         let room = self.room.as_ref();
         let room = room.filter(|room| room.left >= self.least(trial) && room.holds(whole));
+        let beside = self.beside;
+        if trial.yields || trial.motion.beyond.is_some() {
+            // As it is where the distance is kept.
+            self.beside = Beside::Away;
+        }
         if let Some(left) = room.map(|room| room.left) {
             self.result.clear_by = self.result.clear_by.min(left);
             return 0;
@@ -410,7 +425,9 @@ impl Pair {
         let mut trial = *trial;
         if trial.yields {
             computed += 2;
-            if self.is_nearer_at_an_end(&trial, whole) {
+            let near = self.near_ends(&trial, whole);
+            self.beside = beside;
+            if self.beside.rapid(near, trial.motion.way.ends) {
                 trial.keep = ALLOWANCE;
             }
         }
@@ -435,14 +452,12 @@ impl Pair {
         computed
     }
 
-    /// Where a motion begins or ends they are not proven to be apart by more than is to be kept.
-    fn is_nearer_at_an_end(&mut self, trial: &Trial<'_>, whole: &Piece) -> bool {
+    /// Whether they are not proven to be apart by more than is to be kept where a motion begins and where it ends.
+    fn near_ends(&mut self, trial: &Trial<'_>, whole: &Piece) -> [bool; 2] {
         let far = trial.keep + trial.within;
         let enough = Enough { wrapped: far, closely: far };
-        whole
-            .ends
-            .iter()
-            .any(|joints| self.distance(trial.bodies, joints, false, enough).at_least < far)
+        let ends = whole.ends.each_ref();
+        ends.map(|joints| self.distance(trial.bodies, joints, false, enough).at_least < far)
     }
 
     /// Nothing is known of their distance any more.

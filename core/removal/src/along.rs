@@ -288,18 +288,21 @@ impl Watched {
         self.known = None;
     }
 
-    /// Where a way begins or ends it is not proven to be farther than `keep` mm from what is left, by `within` or more.
-    pub fn is_nearer_at_an_end(
+    /// Whether it is nearer to what is left than `keep`, mm, where a way begins and where it ends; what cannot be told from that
+    /// by `within` counts as nearer.
+    pub fn near_ends(
         &mut self,
         field: &mut Field,
         way: &Way<'_>,
         keep: f64,
         within: f64,
-    ) -> bool {
+    ) -> [bool; 2] {
         let far = keep + within;
-        let spared = way.whole().and_then(|whole| self.left(&whole, far, within));
+        if way.whole().is_some_and(|whole| self.left(&whole, far, within).is_some()) {
+            return [false; 2];
+        }
         let ends = way.ends.map(|stance| self.mounted.placement(&stance.joints));
-        spared.is_none() && ends.iter().any(|at| self.apart(field, at, &[]).at_least < far)
+        ends.map(|at| self.apart(field, &at, &[]).at_least < far)
     }
 
     /// Whether it keeps a distance from what is left all along a way, mm. What cannot be told from one that is too short by

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
+use post_clearance::beside::Beside;
 use post_clearance::piece::Way;
 use post_clearance::placement::Placement;
 use post_clearance::proof::{Body, BodyKind, Fault, Proof, Verdict};
@@ -85,8 +86,10 @@ struct Held {
     watched: Watched,
     /// What it keeps from the stock at feed and at rapid, mm.
     keep: [f64; 2],
-    /// It does not, at rapid, where the motion begins or ends nearer.
+    /// It does not, at rapid, where the motion leaves a cut or comes to one.
     yields: bool,
+    /// Before the motion, and behind it.
+    beside: [Beside; 2],
 }
 
 /// A part of a tool.
@@ -235,7 +238,8 @@ impl CutStock {
             let row = self.row(body.name.clone());
             let watched = Watched::of_pieces(mounted, body.shape.convex().to_vec());
             let keep = [rules.keep, rules.rapid];
-            self.others.push(Held { row, watched, keep, yields: false });
+            let beside = [Beside::default(); 2];
+            self.others.push(Held { row, watched, keep, yields: false, beside });
         }
     }
 
@@ -274,7 +278,7 @@ impl CutStock {
             let row = self.row(format!("{what} T{number}"));
             let body = Cutter::vague(&outer);
             let watched = Watched::new(mounted.clone(), inner, &outer);
-            let held = Held { row, watched, keep, yields };
+            let held = Held { row, watched, keep, yields, beside: [Beside::default(); 2] };
             parts.push(Part { kind, held, body, mounted });
         }
         let TurnedProfile { inner, outer, .. } = &edges;
@@ -344,6 +348,11 @@ impl CutStock {
         };
         // Nothing says which tools are left-handed: one that turns the other way takes nothing away for certain.
         let cuts = !against.rapid && against.spins && matches!(spindle, SpindleState::Clockwise(_));
+        for part in &mut tool.parts {
+            let [before, behind] = &mut part.held.beside;
+            *behind = if against.rapid { *behind } else { Beside::default() };
+            *before = *behind;
+        }
         let (mut clear, mut chip) = (true, None);
         for way in against.ways {
             clear &= self.way(&mut tool, against, way, cuts, &mut chip);
@@ -452,12 +461,15 @@ impl CutStock {
 
     /// Holds a body against what is left on a way; whether it stays clear.
     fn stays_clear(&mut self, held: &mut Held, against: &Against<'_>, way: &Way<'_>) -> bool {
-        let Held { row, watched, keep, yields } = held;
+        let Held { row, watched, keep, yields, beside: [before, behind] } = held;
         let mut keep = keep[usize::from(against.rapid)];
         let (nearest, distances) = (watched.nearest(), watched.distances());
-        if *yields && keep > 0.0 && watched.is_nearer_at_an_end(&mut self.field, way, keep, WITHIN)
-        {
-            keep = 0.0;
+        if *yields && keep > 0.0 {
+            *behind = *before;
+            let near = watched.near_ends(&mut self.field, way, keep, WITHIN);
+            if behind.rapid(near, way.ends) {
+                keep = 0.0;
+            }
         }
         let found = watched.along(&mut self.field, way, keep, WITHIN);
         self.distances += watched.distances() - distances;

@@ -3,7 +3,7 @@
 use post_grammar::{Bounds, Expression, Slope};
 
 use crate::dependent_limit::Named;
-use crate::kinematics::{Joints, MAX_AXES};
+use crate::kinematics::{AxisBits, Joints, MAX_AXES};
 
 /// What the names in a formula stand for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -120,7 +120,7 @@ impl AxisFormula {
     }
 
     /// Places in the chain of the axes that it names, one bit each.
-    pub fn axes(&self) -> u8 {
+    pub fn axes(&self) -> AxisBits {
         self.names.axes().fold(0, |bits, (joint, _)| bits | 1 << joint)
     }
 

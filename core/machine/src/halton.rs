@@ -3,7 +3,7 @@
 use crate::kinematics::MAX_AXES;
 
 /// Bases of the sequence, one an axis.
-const PRIMES: [u32; MAX_AXES] = [2, 3, 5, 7, 11, 13, 17, 19];
+const PRIMES: [u32; MAX_AXES] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
 
 /// The `number`th place, counted from 1: for each axis a share of its travel.
 pub(crate) fn place(number: u32) -> [f64; MAX_AXES] {

@@ -15,7 +15,7 @@ use crate::kinematics::orientation::angle;
 use crate::kinematics::{Chain, Joints, MAX_AXES, Pose, Solver};
 
 /// Settings of each rotary axis on the first grid, by how many there are: a few thousand together.
-const GRID: [usize; MAX_AXES + 1] = [1, 37, 37, 19, 9, 5, 4, 3, 3];
+const GRID: [usize; MAX_AXES + 1] = [1, 37, 37, 19, 9, 5, 4, 3, 3, 2, 2, 2, 2];
 
 /// Times that the step is halved around the largest.
 const HALVINGS: usize = 30;

@@ -10,8 +10,12 @@ use nalgebra::Vector3;
 
 use super::errors::AxisErrors;
 
-/// The longest chain; working values are arrays of this length, so that no point allocates.
-pub const MAX_AXES: usize = 8;
+/// The longest chain, as that of a robot of six axes beside which its control leads six more; working values are arrays of
+/// this length, so that no point allocates.
+pub const MAX_AXES: usize = 12;
+
+/// Axes of a chain, one bit each by their places.
+pub type AxisBits = u16;
 
 /// Axis values in chain order: mm for linear axes, radians for rotary ones. Unused places are zero.
 pub type Joints = [f64; MAX_AXES];

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use super::arm::Arm;
 use super::batch::{AxisBatch, LANES, Lanes, VectorLanes};
-use super::chain::{Chain, Joints, MAX_AXES, Pose, Turns};
+use super::chain::{AxisBits, Chain, Joints, MAX_AXES, Pose, Turns};
 use super::derivatives::{self, JointDerivatives, ORDERS};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::linear::{Linear, Second};
@@ -119,7 +119,7 @@ pub(super) enum SolutionMethod {
     Closed {
         orientation: Orientation,
         /// Free rotary axes along the tool, which turn nothing: one bit each.
-        idle: u8,
+        idle: AxisBits,
         linear: Linear,
     },
     /// All joints that move; the linear ones among them that place the tip; what solves two of these without a search; and

@@ -23,7 +23,7 @@ pub mod travel;
 mod turning_axis;
 
 pub use assembly::{Assembly, AssemblyProof};
-pub use chain::{Chain, Joint, Joints, MAX_AXES, Pose, Trace, Turns};
+pub use chain::{AxisBits, Chain, Joint, Joints, MAX_AXES, Pose, Trace, Turns};
 pub use derivatives::{JointDerivatives, ORDERS};
 pub(crate) use errors::acts_before;
 pub use errors::{AxisErrors, SmallMotion};

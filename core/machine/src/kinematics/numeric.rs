@@ -51,6 +51,7 @@ fn sized<const R: usize>(
         5 => stepping::<5, R>,
         6 => stepping::<6, R>,
         7 => stepping::<7, R>,
+        8 => stepping::<8, R>,
         _ => stepping::<MAX_AXES, R>,
     };
     stepping(chain, free, pose, start, left)

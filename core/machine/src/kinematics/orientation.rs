@@ -10,7 +10,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::batch::{AxisBatch, LANES, Lanes, groups, largest, least, widely};
-use super::chain::{Chain, Joints, Pose, Turns, square, turn};
+use super::chain::{AxisBits, Chain, Joints, Pose, Turns, square, turn};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::lane_math::atan2_all;
 
@@ -41,7 +41,7 @@ pub struct RotarySet {
     pub joints: Joints,
     /// Joints whose angle is free here (on the pole, or an axis along the tool), one bit each: they keep
     /// their last value.
-    pub free: u8,
+    pub free: AxisBits,
     /// Sines and cosines of the angles, if they came with them.
     pub(super) turns: Option<Turns>,
 }
@@ -180,7 +180,7 @@ impl Orientation {
         chain: &Chain,
         free: &[usize],
         held: &Joints,
-    ) -> Result<(Self, u8), NoClosedForm> {
+    ) -> Result<(Self, AxisBits), NoClosedForm> {
         let turns = chain.turns(held);
         // Rotation of the held joints in `range`, as one matrix.
         let hold = |range: std::ops::Range<usize>| {

@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::chain::{Chain, Joint, Joints, Pose, Turns, turn};
+use super::chain::{AxisBits, Chain, Joint, Joints, Pose, Turns, turn};
 use super::fault::{POLE, Unreachable};
 use super::inverse::{SolutionMethod, Solver, VERIFIED};
 use super::linear::FLAT;
@@ -31,7 +31,7 @@ const MEETS: f64 = 0.1;
 pub(super) struct Planar {
     orientation: Orientation,
     /// Free rotary axes along the tool, which turn nothing: one bit each.
-    idle: u8,
+    idle: AxisBits,
     linear: [usize; 2],
     /// The free rotary joint in front of both linear ones; none where no rotary joint is free.
     carrier: Option<usize>,

@@ -211,7 +211,7 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
             "A and B turn about parallel axes: they cannot point the tool",
         ),
         (
-            "[w A' B' C' b X Y Z U V W t]",
+            "[w A' B' C' b X Y Z U V W P Q R A1 t]",
             beside(vec![
                 Line("A", &a, turn),
                 Line("B", &b, turn),
@@ -219,8 +219,12 @@ fn chains_without_an_answer_are_refused_with_the_reason() {
                 Line("U", &a, turn),
                 Line("V", &b, turn),
                 Line("W", &c, turn),
+                Line("P", &a, turn),
+                Line("Q", &b, turn),
+                Line("R", &c, turn),
+                Line("A1", &a, turn),
             ]),
-            "9 axes; at most 8 are possible",
+            "13 axes; at most 12 are possible",
         ),
     ];
     for (chain, axes, expected) in cases {
@@ -356,7 +360,7 @@ fn an_upright_tool_is_not_called_impossible_where_it_is_posted() {
     }
 }
 
-/// Any chain of one to eight axes, sensible or not: the loader says why not, or the check comes to an end.
+/// Any chain of one to nine axes, sensible or not: the loader says why not, or the check comes to an end.
 #[test]
 fn random_chains_come_to_an_end() {
     let (rounds, mut rng) = randomised(250u16, 41);
@@ -402,7 +406,7 @@ fn random_chains_come_to_an_end() {
 
 fn random(rng: &mut Rng) -> Result<Machine, Vec<Diagnostic>> {
     const NAMES: [&str; 9] = ["X", "Y", "Z", "U", "V", "W", "A", "B", "C"];
-    let count = 1 + rng.pick(8);
+    let count = 1 + rng.pick(9);
     let linear = [3, 3, 3, 3, 3, 2, 1, 0, 4][rng.pick(9)];
     let bed = rng.pick(count + 1);
     let (mut chain, mut axes) = ("[w".to_owned(), String::new());

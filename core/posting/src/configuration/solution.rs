@@ -8,7 +8,7 @@ use post_machine::description::{Machine, Positions, Side};
 use post_machine::kinematics::choose::RotaryTravel;
 use post_machine::kinematics::orientation::{Branches, angle};
 use post_machine::kinematics::travel::{OverTravel, over, passed};
-use post_machine::kinematics::{Joints, Pose, Solver, Unreachable};
+use post_machine::kinematics::{AxisBits, Joints, Pose, Solver, Unreachable};
 
 /// One solution, its angles on the turn around zero.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +18,7 @@ pub(crate) struct AxisSolution {
     /// Which branch of the inverse; stands of one branch at neighbouring points go on from one another.
     pub branch: u8,
     /// Joints that turn nothing here and keep their last value, one bit each.
-    pub free: u8,
+    pub free: AxisBits,
 }
 
 /// What the choice needs to know of the axes.
@@ -27,7 +27,7 @@ pub(crate) struct ChoiceAxes {
     pub(super) turning: Vec<RotaryAxis>,
     /// Axes among them whose full turns are nothing to the machine, one bit each: they have no travel, and no side of
     /// zero counts.
-    pub(super) endless: u8,
+    pub(super) endless: AxisBits,
     /// Off the part axes without travel may be turned the longer way round as well.
     pub(super) both_ways: bool,
     pub(super) linear: Vec<RotaryTravel>,
@@ -143,11 +143,11 @@ impl ChoiceAxes {
             .collect();
         let sides = machine.solution.prefer.iter();
         let sides = sides.chain(&machine.solution.require);
-        let sided = sides.fold(0, |sided: u8, (joint, _)| sided | 1 << joint);
+        let sided = sides.fold(0, |sided: AxisBits, (joint, _)| sided | 1 << joint);
         let endless = pointing
             .iter()
             .filter(|joint| machine.axes[**joint].travel.is_none())
-            .fold(0, |endless: u8, joint| endless | 1 << joint);
+            .fold(0, |endless: AxisBits, joint| endless | 1 << joint);
         let indexed = (0..machine.axes.len())
             .filter(|joint| machine.axes[*joint].indexed.is_some())
             .collect();

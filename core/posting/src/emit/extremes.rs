@@ -35,11 +35,13 @@ pub(crate) struct Extremes {
     marks: [Option<usize>; 3],
     /// The batch that each of them was marked in last.
     batches: [u64; 3],
+    /// Axes of the machine.
+    axes: usize,
 }
 
 impl Extremes {
-    /// None so far; `lines`: those that lead to the least and largest axis values are wanted.
-    pub(super) fn new(lines: bool) -> Self {
+    /// None so far of a machine with so many axes; `lines`: those that lead to the least and largest axis values are wanted.
+    pub(super) fn new(axes: usize, lines: bool) -> Self {
         Self {
             blocks: 0,
             curves: 0,
@@ -50,6 +52,7 @@ impl Extremes {
             travel: [0.0; MAX_AXES],
             marks: [None; 3],
             batches: [0; 3],
+            axes,
         }
     }
 
@@ -104,7 +107,7 @@ impl Extremes {
     /// [`Extremes::reach`], [`Extremes::note_line`] and [`Extremes::go`] of all blocks of a run that begins at `last`.
     pub(super) fn reach_all(&mut self, last: &Joints, run: &RunColumns) {
         self.blocks += run.count as u64;
-        for (joint, (column, last)) in run.joints.iter().zip(last).enumerate() {
+        for (joint, (column, last)) in run.joints.iter().zip(last).enumerate().take(self.axes) {
             let column = &column[1..=run.count];
             let (mut least, mut most) = (self.least[joint], self.most[joint]);
             for value in column {

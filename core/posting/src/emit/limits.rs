@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use post_machine::dependent_limit::DependentLimit;
 use post_machine::description::{RapidAxes, Tcp};
-use post_machine::kinematics::{Joints, Leg, MAX_AXES};
+use post_machine::kinematics::{AxisBits, Joints, Leg, MAX_AXES};
 
 use super::EmitStage;
 use super::frame::AxisRole;
@@ -20,7 +20,7 @@ pub(super) struct LimitWatch {
     /// Axis values after the last motion, mm and radians.
     at: Joints,
     /// Axes that the program has moved to a place, one bit each.
-    known: u8,
+    known: AxisBits,
     /// Where the drives that are no axes came to.
     pub drives: Vec<DriveRange>,
     /// What solves the points where the control keeps the tip.
@@ -73,7 +73,7 @@ impl EmitStage<'_> {
                 // The rotary axes stand; between these places no axis turns back.
                 let places = printed.map_or(&[][..], |printed| printed.between.as_slice());
                 for place in places.iter().chain([&block.joints]) {
-                    self.keep_to(line, place, u8::MAX, AxesWay::Apart);
+                    self.keep_to(line, place, AxisBits::MAX, AxesWay::Apart);
                 }
             }
             BlockKind::Rapid | BlockKind::Linear => {
@@ -84,7 +84,7 @@ impl EmitStage<'_> {
                     _ if apart => AxesWay::Apart,
                     _ => AxesWay::Straight,
                 };
-                self.keep_to(line, &block.joints, u8::MAX, way);
+                self.keep_to(line, &block.joints, AxisBits::MAX, way);
             }
         }
     }
@@ -95,13 +95,13 @@ impl EmitStage<'_> {
         let of = |wanted: AxisRole| {
             let axes =
                 (0..machine.axes.len()).filter(|joint| AxisRole::of(machine, *joint) == wanted);
-            axes.fold(0, |bits: u8, joint| bits | 1 << joint)
+            axes.fold(0, |bits: AxisBits, joint| bits | 1 << joint)
         };
         let across = match block.reason {
             BlockReason::Above | BlockReason::AtOnce => 0,
             _ => of(AxisRole::Plane),
         };
-        for part in [of(AxisRole::Rotary), across, u8::MAX] {
+        for part in [of(AxisRole::Rotary), across, AxisBits::MAX] {
             self.keep_to(block.line, &block.joints, part, AxesWay::Apart);
         }
     }
@@ -121,7 +121,7 @@ impl EmitStage<'_> {
     }
 
     /// The axes in `part` go to their values in `to`.
-    fn keep_to(&mut self, line: u64, to: &Joints, part: u8, way: AxesWay) {
+    fn keep_to(&mut self, line: u64, to: &Joints, part: AxisBits, way: AxesWay) {
         let machine = self.machine;
         let from = self.limits.at;
         let known = self.limits.known;
@@ -132,7 +132,7 @@ impl EmitStage<'_> {
         self.limits.at = to;
         self.limits.known |= part;
         for limit in &machine.limits {
-            let all = |bits: u8| limit.joints().all(|joint| bits >> joint & 1 == 1);
+            let all = |bits: AxisBits| limit.joints().all(|joint| bits >> joint & 1 == 1);
             // Of a way from nobody knows where the end alone is judged.
             let passed = match (all(known), all(self.limits.known)) {
                 (true, _) => self.passed(limit, way, [&from, &to]),

@@ -19,7 +19,7 @@ use std::thread::Scope;
 use nalgebra::{Rotation3, UnitQuaternion};
 use post_machine::axis_words::{self, AxisWords};
 use post_machine::description::{Machine, Moves, TextPlace};
-use post_machine::kinematics::{Joints, Solver};
+use post_machine::kinematics::{AxisBits, Joints, Solver};
 use post_plugin::{Capabilities, Compensation, DialectSession, Event, List, ToolPose};
 
 use crate::blocks::{BlockKind, BlockNote, BlockReason, MotionBlock, WayAcross};
@@ -108,7 +108,7 @@ impl<'a> EmitStage<'a> {
             base: machine,
             writer,
             texts: ProgramTexts::new(machine, job),
-            extremes: Extremes::new(machine.is_opened()),
+            extremes: Extremes::new(machine.axes.len(), machine.is_opened()),
             last: Joints::default(),
             words,
             clear: false,
@@ -445,7 +445,7 @@ impl<'a> EmitStage<'a> {
             let cuts = block.kind != BlockKind::Rapid;
             if self.last[joint] != block.joints[joint] {
                 self.set_clamp(block.line, joint, false, false);
-                self.clamps.free |= u8::from(cuts) << joint;
+                self.clamps.free |= AxisBits::from(cuts) << joint;
             } else if cuts && self.clamps.free >> joint & 1 == 0 {
                 self.set_clamp(block.line, joint, true, false);
             }

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 use post_machine::description::Smoothing;
+use post_machine::kinematics::AxisBits;
 use post_machine::tilted_plane::TiltedPlane;
 use post_plugin::{Compensation, Coolant, Event};
 
@@ -36,9 +37,9 @@ pub(super) struct CoolantState {
 #[derive(Default)]
 pub(super) struct ClampState {
     /// Axes that are known to be clamped.
-    pub on: u8,
+    pub on: AxisBits,
     /// Rotary axes that have turned in a cut since the tool came: they are left free.
-    pub free: u8,
+    pub free: AxisBits,
 }
 
 /// The tilted plane of the words.

@@ -545,7 +545,8 @@ impl ControlState {
         while left != 0 {
             let letter = left.trailing_zeros() as usize % 26;
             left &= left - 1;
-            let place = usize::from(self.axes.letters[letter]) % post_machine::kinematics::MAX_AXES;
+            let place =
+                usize::from(self.axes.letters[letter]).min(post_machine::kinematics::MAX_AXES - 1);
             let value = words.values[letter] * self.axes.scale[place];
             let way = incremental & (1 << letter) != 0;
             if way {
@@ -573,7 +574,8 @@ impl ControlState {
         if words.named_axes != 0 {
             let mut left = words.named_axes;
             while left != 0 {
-                let place = left.trailing_zeros() as usize % post_machine::kinematics::MAX_AXES;
+                let place =
+                    (left.trailing_zeros() as usize).min(post_machine::kinematics::MAX_AXES - 1);
                 left &= left - 1;
                 target.say(place, words.named_values[place]);
             }

@@ -286,7 +286,7 @@ impl ControlState {
         }
         let mut said = target.said;
         while said != 0 {
-            let place = said.trailing_zeros() as usize % MAX_AXES;
+            let place = (said.trailing_zeros() as usize).min(MAX_AXES - 1);
             self.at.joints[place] = target.joints[place];
             said &= said - 1;
         }

@@ -53,7 +53,7 @@ impl ControlState {
         while left != 0 {
             let letter = left.trailing_zeros() as usize % 26;
             left &= left - 1;
-            let place = usize::from(self.axes.letters[letter]) % MAX_AXES;
+            let place = usize::from(self.axes.letters[letter]).min(MAX_AXES - 1);
             joints[place] = self.shown(place, words.values[letter]);
             stated |= 1 << place;
             if self.axes.rotary & (1 << place) != 0 {

@@ -151,7 +151,7 @@ impl ControlState {
             if all & own & self.axes.mask == 0 {
                 continue;
             }
-            let place = usize::from(self.axes.letters[letter]) % MAX_AXES;
+            let place = usize::from(self.axes.letters[letter]).min(MAX_AXES - 1);
             let rotary = self.axes.rotary & (1 << place) != 0;
             let row = letter.wrapping_sub(23);
             if row < 3 && !rotary && self.state.tcp {

@@ -1,7 +1,7 @@
 //! Limits that depend on other axes, along the motions of a program.
 
 use post_machine::description::{Machine, RapidAxes};
-use post_machine::kinematics::{Joints, MAX_AXES};
+use post_machine::kinematics::{AxisBits, Joints, MAX_AXES};
 
 use super::axes::looked;
 use crate::{Curve, Interpolation, Motion, MotionKind};
@@ -24,7 +24,7 @@ pub struct PassedLimit {
 /// all of them once something is cut.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LimitCheck {
-    moved: u8,
+    moved: AxisBits,
 }
 
 impl LimitCheck {
@@ -37,11 +37,11 @@ impl LimitCheck {
         for joint in 0..MAX_AXES {
             let moves = motion.from.joints[joint] != motion.to.joints[joint];
             let cuts = motion.kind != MotionKind::Rapid;
-            self.moved |= u8::from(moves || cuts) << joint;
+            self.moved |= AxisBits::from(moves || cuts) << joint;
         }
         let ends = [&motion.from.joints, &motion.to.joints];
         machine.limits.iter().enumerate().find_map(|(place, limit)| {
-            let known = |bits: u8| limit.joints().all(|joint| bits >> joint & 1 == 1);
+            let known = |bits: AxisBits| limit.joints().all(|joint| bits >> joint & 1 == 1);
             let passed = match (known(before), known(self.moved)) {
                 (true, _) => on_way(machine, place, motion),
                 (false, true) => Some(motion.to.joints).filter(|to| !limit.holds(to)),

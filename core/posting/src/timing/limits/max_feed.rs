@@ -42,6 +42,10 @@ pub(in crate::timing) fn least_minutes_all(
     least: &mut Lanes,
 ) {
     for (column, slowness) in joints.iter().zip(slowness) {
+        // A place without an axis, or one as fast as may be, asks for no time.
+        if *slowness == 0.0 {
+            continue;
+        }
         let pairs = column[..count].iter().zip(&column[1..=count]);
         for (least, (from, to)) in least.iter_mut().zip(pairs) {
             let minutes = (to - from).abs() * slowness;

@@ -172,6 +172,7 @@
 #define POST_MEANING_JOINT_MOVE 200u
 #define POST_MEANING_POSE_MOVE 201u
 #define POST_MEANING_JOINTS_NOW 202u
+#define POST_MEANING_STRAIGHT_MOVE 203u
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");

@@ -1,7 +1,16 @@
 //! Axes of a robot's arm, and of what stands beside it, by the names that a machine file has for them.
 
-use crate::setup::Setup;
+mod language;
+
+use crate::capabilities::Capabilities;
+use crate::dialect::Format;
+use crate::event::Event;
+use crate::language::Language;
+use crate::number::fixed_text;
+use crate::setup::{OptionKind, OptionSpec, Setup, Units, Value};
 use crate::text::ascii;
+
+pub use language::ArmLanguage;
 
 /// Joints of an arm.
 pub const ARM_JOINTS: usize = 6;
@@ -35,14 +44,55 @@ pub fn arm_axis(name: &str) -> Option<usize> {
 pub struct ArmWords {
     /// Axis of the control of each word.
     places: Vec<usize>,
+    decimals: Vec<u8>,
+    rotary: Vec<bool>,
 }
 
 impl ArmWords {
-    /// Finds the axes of the words of a program.
+    /// The option of a dialect that its words of axes that turn are written by.
+    pub const DECIMALS: OptionSpec = OptionSpec::integer(
+        "decimals",
+        (0, 6),
+        4,
+        "Decimals of the values of axes that turn, degrees.",
+    );
+
+    /// That of a language which leads axes that slide as well.
+    pub const LINEAR_DECIMALS: OptionSpec =
+        OptionSpec::integer("linear_decimals", (0, 6), 3, "Decimals of those that slide, mm.");
+
+    /// The option of a dialect of robots by which `[control] orientation` asks for the form in which straight moves tell how
+    /// the tool stands; the first of them is what it writes by itself.
+    pub const fn orientation(forms: &'static [&'static str]) -> OptionSpec {
+        OptionSpec {
+            key: "orientation",
+            kind: OptionKind::Choice(forms),
+            default: Value::Text(forms[0]),
+            help: "How straight moves tell how the tool stands; [control] orientation says the same.",
+        }
+    }
+
+    /// What a robot's control is told: values of its axes, or poses of the tool that the program is for. No length is
+    /// compensated by it.
+    pub const CAPABILITIES: Capabilities =
+        Capabilities::TOOL_TABLE.and(Capabilities::LENGTH_IN_OFFSET).and(Capabilities::POSES);
+
+    /// Finds the axes of the words of a program of a dialect with the option [`ArmWords::DECIMALS`], and
+    /// [`ArmWords::LINEAR_DECIMALS`] if it leads axes that slide.
     ///
     /// # Errors
-    /// The sentence for the user, about the first axis that is none of a robot.
+    /// The sentence for the user, about the first axis that is none of a robot, units and `tcp`.
     pub fn new(setup: &Setup<'_>) -> Result<Self, String> {
+        if setup.tcp {
+            return Err(
+                "poses of the tool come from the values of the axes: tcp = \"post\"".to_owned()
+            );
+        }
+        if setup.units != Units::Millimetre {
+            return Err(
+                "a robot's axes are told in degrees and millimetres: units = \"mm\"".to_owned()
+            );
+        }
         let mut places = Vec::new();
         for word in setup.words {
             let name = word.name;
@@ -66,7 +116,49 @@ impl ArmWords {
             }
             places.push(place);
         }
-        Ok(Self { places })
+        let decimals = |rotary: bool| match setup.option(Self::LINEAR_DECIMALS.key) {
+            Some(Value::Integer(decimals)) if !rotary => decimals as u8,
+            _ => setup.integer(Self::DECIMALS.key) as u8,
+        };
+        Ok(Self {
+            places,
+            decimals: setup.words.iter().map(|word| decimals(word.rotary)).collect(),
+            rotary: setup.words.iter().map(|word| word.rotary).collect(),
+        })
+    }
+
+    /// How numbers of the program are written; a feed by time with so many decimals.
+    pub fn format(&self, inverse_time: u8, extension: &str) -> Format {
+        Format {
+            words: self.decimals.clone(),
+            feed: 2,
+            inverse_time: Some(inverse_time),
+            feed_per_revolution: 3,
+            extension: extension.to_owned(),
+            language: Language::Joints,
+            ..Format::default()
+        }
+    }
+
+    /// The values that some axes alone are led to at rapid, and which those are, a bit by word: those that turn, or what
+    /// retracts and parks. None of any other event.
+    pub fn some_of<'e>(&self, event: &Event<'e>) -> Option<(&'e [f64], u32)> {
+        match *event {
+            Event::Turn { words } => {
+                let rotary = self.rotary.iter().enumerate();
+                Some((
+                    words,
+                    rotary.fold(0, |mask, (word, rotary)| mask | u32::from(*rotary) << word),
+                ))
+            }
+            Event::Retract { axes, words } | Event::Park { axes, words } => Some((words, axes)),
+            _ => None,
+        }
+    }
+
+    /// The value of a word as it is printed; 0 of one that is not there.
+    pub fn value(&self, word: usize, words: &[f64]) -> String {
+        fixed_text(words.get(word).copied().unwrap_or(0.0), self.decimals[word])
     }
 
     /// Axis of the control of a word of the program, from 0.

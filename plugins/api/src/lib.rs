@@ -86,7 +86,8 @@
 //! # Helpers
 //!
 //! [`Block`] makes lines of words and numbers them, [`Modal`] is a value that holds, [`Axes`] writes the words that
-//! have changed, [`AxisNames`] says which names a control can write; [`fixed`] prints a number to so many decimals and
+//! have changed, [`AxisNames`] says which names a control can write; [`ArmWords`] and [`ArmLanguage`] are what robots'
+//! languages have in common; [`fixed`] prints a number to so many decimals and
 //! [`quantise`] rounds as it does; [`Standstill`] knows when spindle and coolant are to be on again after a stop;
 //! [`remark`], [`ascii`] and [`wrapped`] make text safe.
 //!
@@ -120,7 +121,7 @@ mod standstill;
 mod text;
 mod vocabulary;
 
-pub use arm::{ARM_AXES, ARM_JOINTS, ArmWords, arm_axis, identifier};
+pub use arm::{ARM_AXES, ARM_JOINTS, ArmLanguage, ArmWords, arm_axis, identifier};
 pub use axis_names::AxisNames;
 pub use batch::Batch;
 pub use block::{Axes, Block, CutLine, Group, Modal, NumberStyle};
@@ -135,7 +136,7 @@ pub use export::{Linked, LinkedDialect};
 pub use field::{Codes, FieldShape, List, Promise, ToolPose};
 pub use language::{Language, Lengths};
 pub use model::{Curve, Deviation, ErrorModel, ModelSession, Tolerance};
-pub use number::{fixed, quantise};
+pub use number::{fixed, fixed_text, quantise};
 pub use plane::PlaneAngles;
 pub use setup::{
     Accuracy, Ahead, AxisWord, Kinematics, OptionKind, OptionSpec, Setup, Tool, Units, Value,

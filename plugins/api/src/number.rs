@@ -37,6 +37,13 @@ pub fn fixed(out: &mut String, value: f64, decimals: u8) {
     }
 }
 
+/// [`fixed`] as a text of its own.
+pub fn fixed_text(value: f64, decimals: u8) -> String {
+    let mut text = String::new();
+    fixed(&mut text, value, decimals);
+    text
+}
+
 /// What stands in front of a number: at most eight bytes, so that they are written at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Front {

@@ -377,9 +377,11 @@ codes! {
         MachineCoordinatesOff = 195 "MACHINE_COORDINATES_OFF",
         /// The joints of an arm go evenly to positions: MoveAbsJ, PTP, movej.
         JointMove = 200 "JOINT_MOVE",
-        /// The tool of an arm goes to a pose: MoveL, LIN, movel.
+        /// The tool of an arm goes to a pose otherwise than straight, which is not followed: MoveJ, MoveC, CIRC, movep.
         PoseMove = 201 "POSE_MOVE",
         /// Where the joints of an arm stand: CJointT().
         JointsNow = 202 "JOINTS_NOW",
+        /// The tool of an arm is led straight to a pose, turning evenly about one direction: MoveL, LIN, movel.
+        StraightMove = 203 "STRAIGHT_MOVE",
     }
 }

@@ -4,9 +4,9 @@
 //! What it assumes about the control stands in `docs/src/machine-builder/robots.md`.
 
 use post_plugin::{
-    ARM_JOINTS, ArmWords, Capabilities, Coolant, Dialect, Event, Feed, Format, Language, Meaning,
-    OptionSpec, Setup, Spindle, SpindleSense, ToolPose, Units, VocabularyWord, ascii,
-    export_dialect, fixed, identifier,
+    ARM_JOINTS, ArmLanguage, ArmWords, Capabilities, Dialect, Event, Feed, Format, Meaning,
+    OptionKind, OptionSpec, Setup, ToolPose, Value, VocabularyWord, export_dialect,
+    fixed_text as number, identifier,
 };
 
 /// Characters of a name.
@@ -14,11 +14,11 @@ const NAME: usize = 24;
 
 struct Krl {
     axes: ArmWords,
-    decimals: Vec<u8>,
-    rotary: Vec<bool>,
     program: String,
     tool: i64,
     optional_stop: String,
+    /// What stands behind a straight move that does not come to its end.
+    approximate: String,
     /// Where the tool is led straight next, mm and degrees.
     pose: Option<String>,
     /// Where the tip stands, mm; none where nobody knows.
@@ -28,20 +28,22 @@ struct Krl {
 }
 
 const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::integer(
-        "decimals",
-        (0, 6),
-        4,
-        "Decimals of the values of axes that turn, degrees.",
-    ),
-    OptionSpec::integer("linear_decimals", (0, 6), 3, "Decimals of those that slide, mm."),
+    ArmWords::DECIMALS,
+    ArmWords::LINEAR_DECIMALS,
     OptionSpec::integer("tool", (1, 128), 1, "Number of the tool's frame, of `TOOL_DATA[ ]`."),
+    ArmWords::orientation(&["abc-zyx"]),
+    // Any other leaves the path, and no certificate would hold.
+    OptionSpec {
+        key: "approximate",
+        kind: OptionKind::Choice(&["", "C_DIS", "C_VEL", "C_ORI"]),
+        default: Value::Text(""),
+        help: "By what every cut goes over into the next ($APO); what another than none leaves of the path is not certified.",
+    },
     OptionSpec::lines("optional_stop", "OPTIONAL_STOP()", "Lines of an optional stop."),
 ];
 
 /// What the names of its programs mean.
 const WORDS: &[(&str, Meaning)] = &[
-    (";", Meaning::Remark),
     ("DEF", Meaning::Nothing),
     ("END", Meaning::End),
     ("BAS", Meaning::Nothing),
@@ -52,18 +54,26 @@ const WORDS: &[(&str, Meaning)] = &[
     ("$ACC.CP", Meaning::Nothing),
     ("$ADVANCE", Meaning::Nothing),
     ("PTP", Meaning::JointMove),
-    ("LIN", Meaning::PoseMove),
+    ("LIN", Meaning::StraightMove),
     ("CIRC", Meaning::PoseMove),
     ("WAIT", Meaning::Dwell),
     ("HALT", Meaning::Stop),
-    ("CHANGE_TOOL", Meaning::ToolChange),
-    ("SPINDLE_CW", Meaning::SpindleClockwise),
-    ("SPINDLE_CCW", Meaning::SpindleCounterClockwise),
-    ("SPINDLE_OFF", Meaning::SpindleOff),
-    ("SPINDLE_ORIENT", Meaning::SpindleOrient),
-    ("COOLANT_ON", Meaning::CoolantOn),
-    ("COOLANT_OFF", Meaning::CoolantOff),
 ];
+
+/// How its programs write what stands between moves.
+const LANGUAGE: ArmLanguage = ArmLanguage {
+    indent: "",
+    remark: ";",
+    call: ["(", ")", "()"],
+    kind: "programs",
+    spindle_on: ["SPINDLE_CW", "SPINDLE_CCW"],
+    spindle_orient: "SPINDLE_ORIENT",
+    spindle_off: "SPINDLE_OFF",
+    coolant_on: "COOLANT_ON",
+    coolant_off: "COOLANT_OFF",
+    optional_stop: "OPTIONAL_STOP",
+    tool_change: "CHANGE_TOOL",
+};
 
 impl Dialect for Krl {
     fn options() -> &'static [OptionSpec] {
@@ -71,23 +81,12 @@ impl Dialect for Krl {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        if setup.tcp {
-            return Err(
-                "poses of its tool come from the values of the axes: tcp = \"post\"".to_owned()
-            );
-        }
-        if setup.units != Units::Millimetre {
-            return Err("KRL counts in millimetres: units = \"mm\"".to_owned());
-        }
-        let decimals =
-            |rotary: bool| setup.integer(if rotary { "decimals" } else { "linear_decimals" }) as u8;
         Ok(Krl {
             axes: ArmWords::new(setup)?,
-            decimals: setup.words.iter().map(|word| decimals(word.rotary)).collect(),
-            rotary: setup.words.iter().map(|word| word.rotary).collect(),
             program: identifier(setup.program, NAME),
             tool: setup.integer("tool"),
             optional_stop: setup.text("optional_stop").to_owned(),
+            approximate: setup.text("approximate").to_owned(),
             pose: None,
             tip: None,
             velocity: String::new(),
@@ -95,58 +94,52 @@ impl Dialect for Krl {
     }
 
     fn format(&self) -> Format {
-        Format {
-            words: self.decimals.clone(),
-            feed: 2,
-            inverse_time: Some(6),
-            feed_per_revolution: 3,
-            extension: "src".to_owned(),
-            language: Language::Joints,
-            ..Format::default()
-        }
+        self.axes.format(6, "src")
     }
 
-    /// No length is compensated by the control: values of axes are those with the tool that the program is for.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET | Capabilities::POSES
+        ArmWords::CAPABILITIES
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
-        let known = WORDS.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning));
-        known.chain(VocabularyWord::first_of(&self.optional_stop, Meaning::OptionalStop)).collect()
+        LANGUAGE.vocabulary(WORDS, &self.optional_stop)
     }
 
     fn relies_on(&self) -> Vec<String> {
         let tool = self.tool;
-        vec![
+        let mut relies = vec![
             format!("TOOL_DATA[{tool}] has its origin in the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all axes are at zero; that frame is the robot's ($NULLFRAME)"),
             "LIN leads the tool straight and turns it evenly about one direction, PTP leads all axes so that they arrive together".to_owned(),
-            "the programs SPINDLE_CW, SPINDLE_CCW, SPINDLE_ORIENT, SPINDLE_OFF, COOLANT_ON, COOLANT_OFF, OPTIONAL_STOP and CHANGE_TOOL are on the control, where the program calls them".to_owned(),
-        ]
+            LANGUAGE.relies_on(),
+        ];
+        if !self.approximate.is_empty() {
+            relies.push(format!(
+                "what {} leaves of the path is allowed: it is not certified",
+                self.approximate
+            ));
+        }
+        relies
     }
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        if LANGUAGE.write(event, out) {
+            return Ok(());
+        }
+        if let Some((words, axes)) = self.axes.some_of(event) {
+            self.joints(words, axes, None, out);
+            return Ok(());
+        }
         match *event {
             Event::Start => self.begin(out),
-            Event::Comment { text } => line(&format!("; {}", ascii(text)), out),
-            Event::Literal { text } | Event::Word { text } => line(text, out),
-            Event::ToolChange { number, .. } => line(&format!("CHANGE_TOOL({number})"), out),
-            Event::Spindle(spindle) => turn(spindle, out),
-            Event::Coolant(Coolant::Off) => line("COOLANT_OFF()", out),
-            Event::Coolant(coolant) => line(&format!("COOLANT_ON(\"{coolant:?}\")"), out),
-            Event::Turn { words } => self.joints(words, |krl, word| krl.rotary[word], None, out),
-            Event::Retract { axes, words } | Event::Park { axes, words } => {
-                self.joints(words, |_, word| axes & (1 << word) != 0, None, out);
-            }
             Event::Position { words, feed: None, tool, .. } | Event::Rapid { words, tool } => {
-                self.joints(words, |_, _| true, tool, out);
+                self.joints(words, u32::MAX, tool, out);
             }
             Event::Pose { origin, angles, .. } => {
                 let [x, y, z] = origin.map(|value| number(value, 4));
                 let [a, b, c] = angles.map(|value| number(value, 6));
-                self.pose = Some(format!("{{X {x},Y {y},Z {z},A {a},B {b},C {c}}}"));
+                self.pose = Some(format!("X {x},Y {y},Z {z},A {a},B {b},C {c}"));
             }
-            Event::Linear { feed, tool, .. } => self.straight(feed, tool, out)?,
+            Event::Linear { words, feed, tool, .. } => self.straight(words, feed, tool, out)?,
             Event::Position { .. } => return Err(NO_TIME.to_owned()),
             Event::Dwell { seconds } => line(&format!("WAIT SEC {}", number(seconds, 3)), out),
             Event::Stop => line("HALT", out),
@@ -161,28 +154,7 @@ impl Dialect for Krl {
 const NO_TIME: &str = "KRL has no feed of a joint move: [control] moves = \"straight\" leads cuts by LIN, and rapid = \"rapid\" all others by PTP";
 
 fn line(text: &str, out: &mut String) {
-    out.push_str(text);
-    out.push('\n');
-}
-
-fn number(value: f64, decimals: u8) -> String {
-    let mut text = String::new();
-    fixed(&mut text, value, decimals);
-    text
-}
-
-fn turn(spindle: Spindle, out: &mut String) {
-    let text = match spindle {
-        Spindle::Off => "SPINDLE_OFF()".to_owned(),
-        Spindle::On { rpm, sense: SpindleSense::Clockwise } => {
-            format!("SPINDLE_CW({})", number(rpm, 0))
-        }
-        Spindle::On { rpm, sense: SpindleSense::CounterClockwise } => {
-            format!("SPINDLE_CCW({})", number(rpm, 0))
-        }
-        Spindle::Orient => "SPINDLE_ORIENT()".to_owned(),
-    };
-    line(&text, out);
+    LANGUAGE.line(text, out);
 }
 
 /// The name of an axis of the control.
@@ -203,19 +175,12 @@ impl Krl {
         line(&format!("$TOOL=TOOL_DATA[{}]", self.tool), out);
     }
 
-    /// Leads some axes to their words; the others stay where they are.
-    fn joints(
-        &mut self,
-        words: &[f64],
-        which: impl Fn(&Self, usize) -> bool,
-        tool: Option<ToolPose>,
-        out: &mut String,
-    ) {
+    /// Leads `axes`, a bit by word, to their words; the others stay where they are.
+    fn joints(&mut self, words: &[f64], axes: u32, tool: Option<ToolPose>, out: &mut String) {
         let own = self.axes.words();
         let values = own.iter().enumerate().filter_map(|(place, word)| {
-            let word = word.filter(|word| which(self, *word))?;
-            let value = number(*words.get(word)?, self.decimals[word]);
-            Some(format!("{} {value}", axis(place)))
+            let word = word.filter(|word| axes >> word & 1 == 1 && *word < words.len())?;
+            Some(format!("{} {}", axis(place), self.axes.value(word, words)))
         });
         let values: Vec<String> = values.collect();
         if values.is_empty() {
@@ -225,9 +190,10 @@ impl Krl {
         self.tip = tool.map(|tool| tool.tip);
     }
 
-    /// Leads the tool straight to its pose.
+    /// Leads the tool straight to its pose, and evenly what stands beside the arm.
     fn straight(
         &mut self,
+        words: &[f64],
         feed: Feed,
         tool: Option<ToolPose>,
         out: &mut String,
@@ -253,7 +219,13 @@ impl Krl {
             line(&format!("$VEL.CP={velocity}"), out);
             self.velocity = velocity;
         }
-        line(&format!("LIN {pose}"), out);
+        let own = self.axes.words().into_iter().enumerate().skip(ARM_JOINTS);
+        let beside = own.filter_map(|(place, word)| Some((place, word?)));
+        let beside: String = beside
+            .map(|(place, word)| format!(",{} {}", axis(place), self.axes.value(word, words)))
+            .collect();
+        let leaves = if self.approximate.is_empty() { "" } else { " " };
+        line(&format!("LIN {{{pose}{beside}}}{leaves}{}", self.approximate), out);
         self.tip = Some(to);
         Ok(())
     }

@@ -4,9 +4,8 @@
 //! What it assumes about the control stands in `docs/src/machine-builder/robots.md`.
 
 use post_plugin::{
-    ARM_AXES, ARM_JOINTS, ArmWords, Capabilities, Coolant, Dialect, Event, Feed, Format, Language,
-    Meaning, OptionSpec, Setup, Spindle, SpindleSense, Units, VocabularyWord, ascii,
-    export_dialect, fixed, identifier,
+    ARM_AXES, ARM_JOINTS, ArmLanguage, ArmWords, Capabilities, Dialect, Event, Feed, Format,
+    Meaning, OptionSpec, Setup, VocabularyWord, export_dialect, fixed_text as number, identifier,
 };
 
 /// Components of a `jointtarget`, in that order.
@@ -34,9 +33,8 @@ const NAME: usize = 24;
 
 struct Rapid {
     axes: ArmWords,
-    decimals: Vec<u8>,
-    depth: Vec<bool>,
-    rotary: Vec<bool>,
+    /// The words of depth axes, a bit each.
+    depth: u32,
     program: String,
     zone: String,
     tool: String,
@@ -48,13 +46,8 @@ struct Rapid {
 }
 
 const OPTIONS: &[OptionSpec] = &[
-    OptionSpec::integer(
-        "decimals",
-        (0, 6),
-        4,
-        "Decimals of the values of axes that turn, degrees.",
-    ),
-    OptionSpec::integer("linear_decimals", (0, 6), 3, "Decimals of those that slide, mm."),
+    ArmWords::DECIMALS,
+    ArmWords::LINEAR_DECIMALS,
     // Any other zone leaves the path, and no certificate would hold.
     OptionSpec::text(
         "zone",
@@ -66,19 +59,19 @@ const OPTIONS: &[OptionSpec] = &[
         "tool0",
         "Tool of every move (tooldata): `MoveAbsJ` takes load and velocity from it, `MoveL` its frame too.",
     ),
+    ArmWords::orientation(&["quaternion"]),
     OptionSpec::lines("optional_stop", "OptionalStop;", "Lines of an optional stop."),
 ];
 
 /// What the names of its programs mean.
 const WORDS: &[(&str, Meaning)] = &[
-    ("!", Meaning::Remark),
     ("MODULE", Meaning::Nothing),
     ("VAR", Meaning::Nothing),
     ("PROC", Meaning::Nothing),
     ("ENDPROC", Meaning::End),
     ("MoveAbsJ", Meaning::JointMove),
     ("MoveJ", Meaning::PoseMove),
-    ("MoveL", Meaning::PoseMove),
+    ("MoveL", Meaning::StraightMove),
     ("MoveC", Meaning::PoseMove),
     ("CJointT", Meaning::JointsNow),
     ("ConfJ", Meaning::Nothing),
@@ -86,14 +79,22 @@ const WORDS: &[(&str, Meaning)] = &[
     ("TPWrite", Meaning::Nothing),
     ("WaitTime", Meaning::Dwell),
     ("Stop", Meaning::Stop),
-    ("ChangeTool", Meaning::ToolChange),
-    ("SpindleCw", Meaning::SpindleClockwise),
-    ("SpindleCcw", Meaning::SpindleCounterClockwise),
-    ("SpindleOff", Meaning::SpindleOff),
-    ("SpindleOrient", Meaning::SpindleOrient),
-    ("CoolantOn", Meaning::CoolantOn),
-    ("CoolantOff", Meaning::CoolantOff),
 ];
+
+/// How its programs write what stands between moves.
+const LANGUAGE: ArmLanguage = ArmLanguage {
+    indent: "",
+    remark: "!",
+    call: [" ", ";", ";"],
+    kind: "procedures",
+    spindle_on: ["SpindleCw", "SpindleCcw"],
+    spindle_orient: "SpindleOrient",
+    spindle_off: "SpindleOff",
+    coolant_on: "CoolantOn",
+    coolant_off: "CoolantOff",
+    optional_stop: "OptionalStop",
+    tool_change: "ChangeTool",
+};
 
 impl Dialect for Rapid {
     fn options() -> &'static [OptionSpec] {
@@ -101,21 +102,10 @@ impl Dialect for Rapid {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        if setup.tcp {
-            return Err(
-                "it writes the values of the axes (MoveAbsJ), not MoveL: tcp = \"post\"".to_owned()
-            );
-        }
-        if setup.units != Units::Millimetre {
-            return Err("RAPID counts in millimetres: units = \"mm\"".to_owned());
-        }
-        let decimals =
-            |rotary: bool| setup.integer(if rotary { "decimals" } else { "linear_decimals" }) as u8;
+        let depth = setup.words.iter().enumerate();
         Ok(Rapid {
             axes: ArmWords::new(setup)?,
-            decimals: setup.words.iter().map(|word| decimals(word.rotary)).collect(),
-            depth: setup.words.iter().map(|word| word.depth).collect(),
-            rotary: setup.words.iter().map(|word| word.rotary).collect(),
+            depth: depth.fold(0, |mask, (word, axis)| mask | u32::from(axis.depth) << word),
             program: identifier(setup.program, NAME),
             zone: setup.text("zone").to_owned(),
             tool: setup.text("tool").to_owned(),
@@ -126,32 +116,22 @@ impl Dialect for Rapid {
     }
 
     fn format(&self) -> Format {
-        Format {
-            words: self.decimals.clone(),
-            feed: 2,
-            inverse_time: Some(3),
-            feed_per_revolution: 3,
-            extension: "mod".to_owned(),
-            language: Language::Joints,
-            ..Format::default()
-        }
+        self.axes.format(3, "mod")
     }
 
-    /// No length is compensated by the control: values of axes are those with the tool that the program is for.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET | Capabilities::POSES
+        ArmWords::CAPABILITIES
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
-        let known = WORDS.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning));
-        known.chain(VocabularyWord::first_of(&self.optional_stop, Meaning::OptionalStop)).collect()
+        LANGUAGE.vocabulary(WORDS, &self.optional_stop)
     }
 
     fn relies_on(&self) -> Vec<String> {
         let mut relies = vec![
             "where MoveL is written it leads the tool straight and turns it evenly about one direction; the frame of the tool has its origin in the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all axes are at zero; wobj0 is the machine file's frame".to_owned(),
             "MoveAbsJ leads all axes of the arm and beside it evenly in time, so that they arrive together, whatever tool and work object are".to_owned(),
-            "the procedures SpindleCw, SpindleCcw, SpindleOrient, SpindleOff, CoolantOn, CoolantOff, OptionalStop and ChangeTool are on the control, where the program calls them".to_owned(),
+            LANGUAGE.relies_on(),
         ];
         if self.zone != "fine" {
             relies.push(format!(
@@ -163,25 +143,22 @@ impl Dialect for Rapid {
     }
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        if LANGUAGE.write(event, out) {
+            return Ok(());
+        }
+        if let Some((words, axes)) = self.axes.some_of(event) {
+            self.some(words, axes, out);
+            return Ok(());
+        }
         match *event {
             Event::Start => {
                 line(&format!("MODULE M{}", self.program), out);
                 line("VAR jointtarget here;", out);
                 line(&format!("PROC {}()", self.program), out);
             }
-            Event::Comment { text } => line(&format!("! {}", ascii(text)), out),
-            Event::Literal { text } | Event::Word { text } => line(text, out),
-            Event::ToolChange { number, .. } => line(&format!("ChangeTool {number};"), out),
-            Event::Spindle(spindle) => self.turn(spindle, out),
-            Event::Coolant(Coolant::Off) => line("CoolantOff;", out),
-            Event::Coolant(coolant) => line(&format!("CoolantOn \"{coolant:?}\";"), out),
-            Event::Turn { words } => self.some(words, |rapid, word| rapid.rotary[word], out),
-            Event::Retract { axes, words } | Event::Park { axes, words } => {
-                self.some(words, |_, word| axes & (1 << word) != 0, out);
-            }
             Event::Position { words, feed, plane_first, .. } => {
-                if plane_first && self.depth.contains(&true) {
-                    self.some(words, |rapid, word| !rapid.depth[word], out);
+                if plane_first && self.depth != 0 {
+                    self.some(words, !self.depth, out);
                 }
                 self.all(words, feed, "fine", out)?;
             }
@@ -208,36 +185,15 @@ impl Dialect for Rapid {
 }
 
 fn line(text: &str, out: &mut String) {
-    out.push_str(text);
-    out.push('\n');
-}
-
-fn number(value: f64, decimals: u8) -> String {
-    let mut text = String::new();
-    fixed(&mut text, value, decimals);
-    text
+    LANGUAGE.line(text, out);
 }
 
 impl Rapid {
-    fn turn(&self, spindle: Spindle, out: &mut String) {
-        let text = match spindle {
-            Spindle::Off => "SpindleOff;".to_owned(),
-            Spindle::On { rpm, sense: SpindleSense::Clockwise } => {
-                format!("SpindleCw {};", number(rpm, 0))
-            }
-            Spindle::On { rpm, sense: SpindleSense::CounterClockwise } => {
-                format!("SpindleCcw {};", number(rpm, 0))
-            }
-            Spindle::Orient => "SpindleOrient;".to_owned(),
-        };
-        line(&text, out);
-    }
-
-    /// Leads some axes to their words at the largest velocity; the others stay where they are.
-    fn some(&self, words: &[f64], which: impl Fn(&Self, usize) -> bool, out: &mut String) {
+    /// Leads `axes`, a bit by word, to their words at the largest velocity; the others stay where they are.
+    fn some(&self, words: &[f64], axes: u32, out: &mut String) {
         line("here:=CJointT();", out);
-        for (word, value) in words.iter().enumerate().filter(|(word, _)| which(self, *word)) {
-            let value = number(*value, self.decimals[word]);
+        for word in (0..words.len()).filter(|word| axes >> word & 1 == 1) {
+            let value = self.axes.value(word, words);
             line(&format!("here.{}:={value};", COMPONENTS[self.axes.place(word)]), out);
         }
         line(&format!("MoveAbsJ here,vmax,fine,{};", self.tool), out);
@@ -271,7 +227,7 @@ impl Rapid {
     fn targets(&self, words: &[f64]) -> [String; 2] {
         let own = self.axes.words();
         let values: [String; ARM_AXES] = std::array::from_fn(|place| match own[place] {
-            Some(word) => number(words.get(word).copied().unwrap_or(0.0), self.decimals[word]),
+            Some(word) => self.axes.value(word, words),
             None if place < ARM_JOINTS => "0".to_owned(),
             // An axis that is not there.
             None => "9E9".to_owned(),

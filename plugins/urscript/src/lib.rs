@@ -4,9 +4,8 @@
 //! What it assumes about the control stands in `docs/src/machine-builder/robots.md`.
 
 use post_plugin::{
-    ARM_JOINTS, ArmWords, Capabilities, Coolant, Dialect, Event, Feed, Format, Language, Meaning,
-    OptionSpec, Setup, Spindle, SpindleSense, Units, VocabularyWord, ascii, export_dialect, fixed,
-    identifier,
+    ARM_JOINTS, ArmLanguage, ArmWords, Capabilities, Dialect, Event, Feed, Format, Meaning,
+    OptionSpec, Setup, VocabularyWord, export_dialect, fixed_text as number, identifier,
 };
 
 /// Decimals of a time in seconds: enough that feeds which differ differ.
@@ -17,7 +16,6 @@ const NAME: usize = 30;
 
 struct UrScript {
     axes: ArmWords,
-    decimals: u8,
     acceleration: f64,
     velocity: f64,
     blend: f64,
@@ -48,16 +46,16 @@ const OPTIONS: &[OptionSpec] = &[
         0.0,
         "Blend radius of every cut, m; what another than 0 leaves of the path is not certified.",
     ),
+    ArmWords::orientation(&["rotation-vector"]),
     OptionSpec::lines("optional_stop", "optional_stop()", "Lines of an optional stop."),
 ];
 
 /// What the names of its programs mean.
 const WORDS: &[(&str, Meaning)] = &[
-    ("#", Meaning::Remark),
     ("def", Meaning::Nothing),
     ("end", Meaning::End),
     ("movej", Meaning::JointMove),
-    ("movel", Meaning::PoseMove),
+    ("movel", Meaning::StraightMove),
     ("movep", Meaning::PoseMove),
     ("movec", Meaning::PoseMove),
     ("get_actual_joint_positions", Meaning::JointsNow),
@@ -66,14 +64,22 @@ const WORDS: &[(&str, Meaning)] = &[
     ("set_tcp", Meaning::Nothing),
     ("sleep", Meaning::Dwell),
     ("popup", Meaning::Stop),
-    ("change_tool", Meaning::ToolChange),
-    ("spindle_cw", Meaning::SpindleClockwise),
-    ("spindle_ccw", Meaning::SpindleCounterClockwise),
-    ("spindle_off", Meaning::SpindleOff),
-    ("spindle_orient", Meaning::SpindleOrient),
-    ("coolant_on", Meaning::CoolantOn),
-    ("coolant_off", Meaning::CoolantOff),
 ];
+
+/// How its programs write what stands between moves.
+const LANGUAGE: ArmLanguage = ArmLanguage {
+    indent: "  ",
+    remark: "#",
+    call: ["(", ")", "()"],
+    kind: "functions",
+    spindle_on: ["spindle_cw", "spindle_ccw"],
+    spindle_orient: "spindle_orient",
+    spindle_off: "spindle_off",
+    coolant_on: "coolant_on",
+    coolant_off: "coolant_off",
+    optional_stop: "optional_stop",
+    tool_change: "change_tool",
+};
 
 impl Dialect for UrScript {
     fn options() -> &'static [OptionSpec] {
@@ -81,14 +87,6 @@ impl Dialect for UrScript {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        if setup.tcp {
-            return Err(
-                "it writes the values of the joints (movej), not movel: tcp = \"post\"".to_owned()
-            );
-        }
-        if setup.units != Units::Millimetre {
-            return Err("URScript counts in metres and radians: units = \"mm\"".to_owned());
-        }
         let axes = ArmWords::new(setup)?;
         for (word, axis) in setup.words.iter().enumerate() {
             if axes.place(word) >= ARM_JOINTS {
@@ -104,7 +102,6 @@ impl Dialect for UrScript {
         }
         Ok(UrScript {
             axes,
-            decimals: setup.integer("decimals") as u8,
             acceleration: setup.number("acceleration"),
             velocity: setup.number("velocity"),
             blend: setup.number("blend"),
@@ -115,32 +112,22 @@ impl Dialect for UrScript {
     }
 
     fn format(&self) -> Format {
-        Format {
-            words: vec![self.decimals; ARM_JOINTS],
-            feed: 2,
-            inverse_time: Some(3),
-            feed_per_revolution: 3,
-            extension: "script".to_owned(),
-            language: Language::Joints,
-            ..Format::default()
-        }
+        self.axes.format(3, "script")
     }
 
-    /// No length is compensated by the control: values of joints are those with the tool that the program is for.
     fn capabilities(&self) -> Capabilities {
-        Capabilities::TOOL_TABLE | Capabilities::LENGTH_IN_OFFSET | Capabilities::POSES
+        ArmWords::CAPABILITIES
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
-        let known = WORDS.iter().map(|(word, meaning)| VocabularyWord::new(word, *meaning));
-        known.chain(VocabularyWord::first_of(&self.optional_stop, Meaning::OptionalStop)).collect()
+        LANGUAGE.vocabulary(WORDS, &self.optional_stop)
     }
 
     fn relies_on(&self) -> Vec<String> {
         let mut relies = vec![
             "where movel is written it leads the tool straight and turns it evenly about one direction; the tool centre point of the installation is the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all joints are at zero; the base is the machine file's frame".to_owned(),
             "movej leads all joints evenly in time, so that they arrive together, and t is the time of the whole move".to_owned(),
-            "the functions spindle_cw, spindle_ccw, spindle_orient, spindle_off, coolant_on, coolant_off, optional_stop and change_tool are on the control, where the program calls them".to_owned(),
+            LANGUAGE.relies_on(),
         ];
         if self.blend != 0.0 {
             relies.push(format!(
@@ -152,6 +139,13 @@ impl Dialect for UrScript {
     }
 
     fn write(&mut self, event: &Event<'_>, out: &mut String) -> Result<(), String> {
+        if LANGUAGE.write(event, out) {
+            return Ok(());
+        }
+        if let Some((words, axes)) = self.axes.some_of(event) {
+            self.some(words, axes, out);
+            return Ok(());
+        }
         match *event {
             Event::Start => {
                 out.push_str(&format!("def {}():\n", self.program));
@@ -160,16 +154,6 @@ impl Dialect for UrScript {
             Event::End => {
                 out.push_str("end\n");
                 return Ok(());
-            }
-            Event::Comment { text } => line(&format!("# {}", ascii(text)), out),
-            Event::Literal { text } | Event::Word { text } => line(text, out),
-            Event::ToolChange { number, .. } => line(&format!("change_tool({number})"), out),
-            Event::Spindle(spindle) => turn(spindle, out),
-            Event::Coolant(Coolant::Off) => line("coolant_off()", out),
-            Event::Coolant(coolant) => line(&format!("coolant_on(\"{coolant:?}\")"), out),
-            Event::Turn { words } => self.some(words, |_| true, out),
-            Event::Retract { axes, words } | Event::Park { axes, words } => {
-                self.some(words, |word| axes & (1 << word) != 0, out);
             }
             Event::Position { words, feed: None, .. } | Event::Rapid { words, .. } => {
                 self.all(words, &self.fast(), 0.0, out);
@@ -202,29 +186,7 @@ impl Dialect for UrScript {
 
 /// A line inside the function.
 fn line(text: &str, out: &mut String) {
-    out.push_str("  ");
-    out.push_str(text);
-    out.push('\n');
-}
-
-fn number(value: f64, decimals: u8) -> String {
-    let mut text = String::new();
-    fixed(&mut text, value, decimals);
-    text
-}
-
-fn turn(spindle: Spindle, out: &mut String) {
-    let text = match spindle {
-        Spindle::Off => "spindle_off()".to_owned(),
-        Spindle::On { rpm, sense: SpindleSense::Clockwise } => {
-            format!("spindle_cw({})", number(rpm, 0))
-        }
-        Spindle::On { rpm, sense: SpindleSense::CounterClockwise } => {
-            format!("spindle_ccw({})", number(rpm, 0))
-        }
-        Spindle::Orient => "spindle_orient()".to_owned(),
-    };
-    line(&text, out);
+    LANGUAGE.line(text, out);
 }
 
 /// The time of a whole move, s.
@@ -244,15 +206,12 @@ impl UrScript {
         if self.blend == 0.0 { "0".to_owned() } else { number(self.blend, 4) }
     }
 
-    fn degrees(&self, value: f64) -> String {
-        format!("d2r({})", number(value, self.decimals))
-    }
-
-    /// Leads some joints to their words at rapid; the others stay where they are.
-    fn some(&self, words: &[f64], which: impl Fn(usize) -> bool, out: &mut String) {
+    /// Leads `axes`, a bit by word, to their words at rapid; the others stay where they are.
+    fn some(&self, words: &[f64], axes: u32, out: &mut String) {
         line("here = get_actual_joint_positions()", out);
-        for (word, value) in words.iter().enumerate().filter(|(word, _)| which(*word)) {
-            line(&format!("here[{}] = {}", self.axes.place(word), self.degrees(*value)), out);
+        for word in (0..words.len()).filter(|word| axes >> word & 1 == 1) {
+            let (place, value) = (self.axes.place(word), self.axes.value(word, words));
+            line(&format!("here[{place}] = d2r({value})"), out);
         }
         line(&format!("movej(here, {}, r=0)", self.fast()), out);
     }
@@ -260,8 +219,9 @@ impl UrScript {
     /// Leads all joints to their words.
     fn all(&self, words: &[f64], pace: &str, blend: f64, out: &mut String) {
         let own = self.axes.words();
-        let joints = own.iter().flatten().filter_map(|word| words.get(*word));
-        let joints: Vec<String> = joints.map(|value| self.degrees(*value)).collect();
+        let joints = own.iter().flatten();
+        let joints = joints.map(|word| format!("d2r({})", self.axes.value(*word, words)));
+        let joints: Vec<String> = joints.collect();
         let blend = if blend == 0.0 { "0".to_owned() } else { number(blend, 4) };
         line(&format!("movej([{}], {pace}, r={blend})", joints.join(", ")), out);
     }

@@ -62,26 +62,37 @@ const WITH: [&str; 7] = ["-q", "-m", "arm.toml", "--plugins", ".", "--tool-lengt
 /// Tip (mm, from the foot of the arm) and direction to the holder, by the law of arms with a parallel shoulder and a
 /// spherical wrist; joints in degrees.
 fn opw([a1, a2, b, c1, c2, c3, c4]: [f64; 7], degrees: [f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
-    let [t1, t2, t3, t4, t5, t6] = degrees.map(f64::to_radians);
+    let [t1, t2, t3, ..] = degrees.map(f64::to_radians);
     let (psi, k) = (libm::atan2(a2, c3), libm::hypot(a2, c3));
     let out = c2 * libm::sin(t2) + k * libm::sin(t2 + t3 + psi) + a1;
     let up = c2 * libm::cos(t2) + k * libm::cos(t2 + t3 + psi) + c1;
-    let about_z = |angle| Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
-    let about_y = |angle| Rotation3::from_axis_angle(&Vector3::y_axis(), angle);
     let wrist = about_z(t1) * Vector3::new(out, b, up);
-    let turn = about_z(t1) * about_y(t2 + t3) * about_z(t4) * about_y(t5) * about_z(t6);
-    let along = turn * Vector3::z();
+    let along = flange(degrees) * Vector3::z();
     (wrist + along * (c4 + TOOL), -along)
 }
 
-/// Six numbers, those behind `d2r(` or in the first list of a line.
+fn about_z(angle: f64) -> Rotation3<f64> {
+    Rotation3::from_axis_angle(&Vector3::z_axis(), angle)
+}
+
+/// How the flange is turned, by the same law: its Z from the spindle to the tip, its X along X at zero.
+fn flange(degrees: [f64; 6]) -> Rotation3<f64> {
+    let about_y = |angle| Rotation3::from_axis_angle(&Vector3::y_axis(), angle);
+    let [t1, t2, t3, t4, t5, t6] = degrees.map(f64::to_radians);
+    about_z(t1) * about_y(t2 + t3) * about_z(t4) * about_y(t5) * about_z(t6)
+}
+
+/// Six numbers, those behind `d2r(`, in the first list of a line or in braces.
 fn joints(line: &str) -> Option<[f64; 6]> {
-    let list = match line.trim().strip_prefix("MoveAbsJ [[") {
-        Some(list) => list.split(']').next()?.to_owned(),
-        None => {
-            let list = line.trim().strip_prefix("movej([")?.split(']').next()?;
-            list.replace("d2r(", "").replace(')', "")
-        }
+    let line = line.trim();
+    let list = if let Some(list) = line.strip_prefix("MoveAbsJ [[") {
+        list.split(']').next()?.to_owned()
+    } else if let Some(list) = line.strip_prefix("PTP {") {
+        let values = list.trim_end_matches('}').split(',');
+        values.filter_map(|value| value.split(' ').nth(1)).collect::<Vec<_>>().join(",")
+    } else {
+        let list = line.strip_prefix("movej([")?.split(']').next()?;
+        list.replace("d2r(", "").replace(')', "")
     };
     let numbers: Vec<f64> = list.split(',').map(|part| part.trim().parse().unwrap()).collect();
     numbers.try_into().ok()
@@ -306,6 +317,167 @@ fn tools_are_led_straight_and_read_back() {
     }
 }
 
+/// A tool that is led straight turns evenly about one direction, and where it turns about itself too its axis leaves the
+/// great circle between two points: a program without the points that hold it there is found, by as much as it strays.
+#[test]
+fn a_tool_axis_that_strays_between_poses_is_found() {
+    let leaning = |degrees: f64, about: f64| {
+        let (lean, to) = (degrees.to_radians(), about.to_radians());
+        [libm::sin(lean) * libm::cos(to), libm::sin(lean) * libm::sin(to), libm::cos(lean)]
+    };
+    let [first, last] = [leaning(25.0, 200.0), leaning(25.0, 290.0)];
+    let goto = |x: f64, [i, j, k]: [f64; 3]| format!("GOTO/{x},0,0,{i:.9},{j:.9},{k:.9}\n");
+    let cl = format!(
+        "UNITS/MM\nLOADTL/1\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/-20,0,40,0,0,1\nRAPID\n{}FEDRAT/800,MMPM\n{}SPINDL/OFF\nFINI\n",
+        goto(-20.0, first),
+        goto(20.0, last),
+    );
+    for (dialect, file, begins) in [
+        ("rapid", "part.mod", "MoveL "),
+        ("urscript", "part.script", "movel("),
+        ("krl", "part.src", "LIN "),
+    ] {
+        let folder = folder(&ARMS[0], dialect);
+        let path = folder.path();
+        fs::write(path.join("part.cls"), &cl).unwrap();
+        let mut with = WITH.to_vec();
+        with.extend([
+            "--set",
+            "control.moves=\"straight\"",
+            "--set",
+            "accuracy.axis_tolerance=0.05",
+        ]);
+        if dialect == "rapid" {
+            with.extend(["--set", "control.rapid.tool=\"spindle\""]);
+        }
+        let posted = post(path, &[&["part.cls", "-o", file][..], &with[..]].concat());
+        assert_eq!(posted.code, 0, "{dialect}: {}", posted.err);
+        let program = fs::read_to_string(path.join(file)).unwrap();
+        let verify = |name: &str| {
+            let against =
+                [&["verify", name, "--against", "part.cls", "--summary", "-"][..], &with[..]];
+            let read = post(path, &against.concat());
+            let told: serde_json::Value = serde_json::from_str(&read.out).unwrap();
+            (read.code, told["axis"]["value"].as_f64().unwrap(), told)
+        };
+        let (code, kept, _) = verify(file);
+        assert!(code == 0 && kept <= 0.05, "{dialect}: {code} {kept}");
+        // The last pose alone.
+        let cuts = program.lines().filter(|line| line.trim().starts_with(begins)).count();
+        assert!(cuts > 2, "{program}");
+        let mut left = cuts;
+        let sparse = program.lines().filter(|line| {
+            let cut = line.trim().starts_with(begins);
+            left -= usize::from(cut);
+            !cut || left == 0
+        });
+        let sparse: String = sparse.map(|line| format!("{line}\n")).collect();
+        fs::write(path.join("sparse.txt"), sparse).unwrap();
+        // From the frame where the cut begins, which the joints before it tell.
+        let at =
+            program[..program.find(begins).unwrap()].lines().filter_map(joints).last().unwrap();
+        let from = *flange(at).matrix();
+        let (_, to) = *poses(&program).last().unwrap();
+        let whole = Rotation3::from_matrix_unchecked(to * from.transpose());
+        let circle = Vector3::from(first).cross(&Vector3::from(last)).normalize();
+        let strays = (1..100).map(|share| {
+            let axis = -(whole.powf(f64::from(share) / 100.0) * from.column(2));
+            libm::asin(axis.dot(&circle).abs()).to_degrees()
+        });
+        let strays = strays.fold(0.0, f64::max);
+        assert!(strays > 0.2, "{dialect}: {strays}");
+        let (code, found, told) = verify("sparse.txt");
+        assert_eq!(code, 1, "{dialect}: {told}");
+        assert!((found - strays).abs() < 0.05 * strays, "{dialect}: {found} and {strays}");
+    }
+}
+
+/// A rail goes evenly beside an arm that leads its tool straight: poses stay those of the machine, the rail stands where the
+/// arm reaches them, and a rail that stays behind is found.
+#[test]
+fn a_rail_goes_along_in_straight_moves() {
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/0,-2400,40,0,0,1\nFEDRAT/6000,MMPM\nGOTO/0,-2400,0,0,0,1\nGOTO/0,0,0,0.1,0,0.99\nGOTO/0,2400,0,0,0,1\nRAPID\nGOTO/0,2400,40,0,0,1\nSPINDL/OFF\nFINI\n";
+    for (dialect, file, begins) in [("rapid", "part.mod", "MoveL "), ("krl", "part.src", "LIN ")] {
+        let folder = folder(&ARMS[0], dialect);
+        let path = folder.path();
+        fs::write(path.join("part.cls"), cl).unwrap();
+        let mut with = vec!["-q", "-m", "irb4600-rail", "--plugins", ".", "--tool-length", "80"];
+        with.extend(["--dialect", dialect, "--set", "control.moves=\"straight\""]);
+        if dialect == "rapid" {
+            with.extend(["--set", "control.rapid.tool=\"spindle\""]);
+        }
+        let posted = post(path, &[&["part.cls", "-o", file][..], &with].concat());
+        assert_eq!(posted.code, 0, "{dialect}: {}", posted.err);
+        let program = fs::read_to_string(path.join(file)).unwrap();
+        let cuts: Vec<&str> = program.lines().filter(|line| line.starts_with(begins)).collect();
+        // Y of the machine is the second axis beside the arm.
+        let rail = |line: &str| -> f64 {
+            let value = match line.split_once("E2 ") {
+                Some((_, behind)) => behind.split(['}', ',']).next().unwrap(),
+                None => line.split("9E9,").nth(1).unwrap().split(',').next().unwrap(),
+            };
+            value.parse().unwrap()
+        };
+        let rails: Vec<f64> = cuts.iter().map(|line| rail(line)).collect();
+        let spread = rails
+            .iter()
+            .fold([f64::MAX, f64::MIN], |[least, most], rail| [least.min(*rail), most.max(*rail)]);
+        assert!(spread[1] - spread[0] > 1000.0, "{dialect}: {spread:?}");
+        // 4.8 m are led along, and the arm reaches 2.05 m and its spindle.
+        for ((tip, _), rail) in poses(&program).into_iter().zip(&rails) {
+            assert!((tip.y - rail).hypot(tip.x) < 2300.0, "{dialect}: {tip:?} from {rail}");
+        }
+        let verify = |name: &str| {
+            let against = [&["verify", name, "--against", "part.cls"][..], &with].concat();
+            post(path, &against)
+        };
+        let read = verify(file);
+        assert_eq!(read.code, 0, "{dialect}: {}{}", read.out, read.err);
+        let last = *cuts.last().unwrap();
+        let behind = match dialect {
+            "krl" => last.replace(&format!("E2 {:.3}", rail(last)), "E2 -3000.000"),
+            _ => last.replace(&format!("9E9,{:.3}", rail(last)), "9E9,-3000.000"),
+        };
+        assert_ne!(behind, last);
+        fs::write(path.join("other.txt"), program.replace(last, &behind)).unwrap();
+        let read = verify("other.txt");
+        let all = format!("{}{}", read.out, read.err);
+        assert!(read.code == 1 && all.contains("do not reach the pose"), "{dialect}: {all}");
+    }
+}
+
+/// How straight moves tell where the tool points is asked for by name, and means them.
+#[test]
+fn the_form_of_an_orientation_is_asked_for_by_name() {
+    let forms = [("rapid", "quaternion"), ("krl", "abc-zyx"), ("urscript", "rotation-vector")];
+    for (dialect, form) in forms {
+        let folder = folder(&ARMS[0], dialect);
+        let written = |set: &str| {
+            let tool = "control.rapid.tool=\"spindle\"";
+            let tool = if dialect == "rapid" { &["--set", tool][..] } else { &[] };
+            let set = ["part.cls", "-o", "-", "--set", set];
+            post(folder.path(), &[&set[..], tool, &WITH].concat())
+        };
+        let straight = written("control.moves=\"straight\"");
+        assert_eq!(straight.code, 0, "{dialect}: {}", straight.err);
+        for (_, other) in forms {
+            let named = written(&format!("control.orientation=\"{other}\""));
+            if other == form {
+                assert_eq!(
+                    (named.code, &named.out),
+                    (0, &straight.out),
+                    "{dialect}: {}",
+                    named.err
+                );
+            } else {
+                assert_eq!(named.code, 1, "{dialect} {other}");
+                let has = format!("it has \"axes\", \"{form}\"");
+                assert!(named.err.contains(&has), "{}", named.err);
+            }
+        }
+    }
+}
+
 /// Where a language, a machine or a tool cannot be led straight, it is said.
 #[test]
 fn what_cannot_be_led_straight_is_refused() {
@@ -320,7 +492,11 @@ fn what_cannot_be_led_straight_is_refused() {
     let fanuc = [&WITH[..], &["--dialect", "fanuc"]].concat();
     refused(&fanuc, "the dialect fanuc has no poses");
     refused(&WITH, "tool0 is none");
-    let rail =
-        ["-m", "irb4600-rail", "--plugins", ".", "--dialect", "rapid", "--tool-length", "80"];
-    refused(&rail, "an arm of six axes alone");
+    let positioner = "extends = \"kr6-r700\"\nchain = \"[w E1' b A B C U V W (S) t]\"\n[axis.E1]\nrotary = [0, 0, 1]\npoint = [420, 0, 0]\ntravel = [-180, 180]\n";
+    fs::write(folder.path().join("positioner.toml"), positioner).unwrap();
+    let arguments = ["-m", "positioner.toml", "--plugins", ".", "--dialect", "rapid"];
+    refused(
+        &[&arguments[..], &["--tool-length", "80"]].concat(),
+        "axes that carry the part lead joints alone",
+    );
 }

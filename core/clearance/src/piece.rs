@@ -92,7 +92,9 @@ impl Way<'_> {
             return Some(piece);
         }
         let turning = turns(self.solver.chain(), self.ends);
-        if turning && *self.interpolation == Interpolation::TipAndAxis {
+        let led =
+            matches!(self.interpolation, Interpolation::TipAndAxis | Interpolation::TipAndFrame(_));
+        if turning && led {
             return None;
         }
         let share = piece.share;

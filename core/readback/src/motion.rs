@@ -98,7 +98,11 @@ impl Motion {
         if self.bends_little(chord, angle) {
             return 1;
         }
-        let bend = self.bend();
+        let bend = match self.way {
+            // Neither the axis nor its great circle bends more than the tool turns.
+            Interpolation::TipAndFrame(turn) => Bend { tip: 0.0, axis: 2.0 * turn.norm_squared() },
+            _ => self.bend(),
+        };
         // The chord over the whole of a piece, looked at nowhere.
         let blind = libm::sqrt((bend.tip / (8.0 * chord)).max(bend.axis / (8.0 * angle)));
         let blind = libm::ceil(blind).clamp(1.0, MOST_PIECES) as u64;

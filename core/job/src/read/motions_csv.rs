@@ -34,6 +34,7 @@ fn columns(axes: &[AxisColumn]) -> Vec<Column<MotionReadings>> {
             Interpolation::Axes => "axes",
             Interpolation::Tip(Curve::Straight) => "tip",
             Interpolation::TipAndAxis => "tip and axis",
+            Interpolation::TipAndFrame(_) => "tip and frame",
             Interpolation::Tip(Curve::Arc { .. }) => "arc",
             Interpolation::Tip(Curve::Spline(_)) => "spline",
         }),

@@ -364,7 +364,9 @@ impl<'m> MotionRows<'m> {
                 let bow = (motion.at(0.5).tip - 0.5 * (from + to)).norm();
                 if bow > tolerance / 50.0 { 2 } else { 1 }
             }
-            Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis => 1,
+            Interpolation::Tip(Curve::Straight)
+            | Interpolation::TipAndAxis
+            | Interpolation::TipAndFrame(_) => 1,
             Interpolation::Tip(Curve::Arc { centre, sweep, .. }) => {
                 let chords = arc_chords((from - centre).norm(), *sweep, tolerance);
                 chords.clamp(2.0, MOST_PLACES) as u32

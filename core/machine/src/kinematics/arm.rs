@@ -93,6 +93,11 @@ impl Arm {
         Some(Self { first, centre, elbow, turning, spherical, edge })
     }
 
+    /// Place of its first joint in the chain.
+    pub(super) fn first(&self) -> usize {
+        self.first
+    }
+
     /// The edge with all axes at zero, some direction across the axis of a tool that turns.
     pub(super) fn edge(&self) -> Vector3<f64> {
         self.edge

@@ -116,6 +116,14 @@ impl Solver {
         matches!(&self.form, SolutionMethod::Numeric { arm: Some(_), .. })
     }
 
+    /// Joints of the chain in front of a robot's arm, rails among them; none of another chain.
+    pub fn before_arm(&self) -> usize {
+        match &self.form {
+            SolutionMethod::Numeric { arm: Some(arm), .. } => arm.first(),
+            _ => 0,
+        }
+    }
+
     /// Whether [`Solver::inverse`] gives solutions all around for the turn about the tool.
     pub fn spins(&self) -> bool {
         self.chain.edge().is_none() && self.has_arm()
@@ -140,13 +148,15 @@ impl Solver {
     }
 
     /// The solution next to `from` at which the tool stands as a whole: `pose` has the second direction of
-    /// [`Solver::stand`] for its edge. None where nothing is found.
+    /// [`Solver::stand`] for its edge. The joints in front of a robot's arm stand as in `from`. None where nothing is found.
     pub fn search_stand(&self, pose: &Pose, from: &Joints, tolerance: f64) -> Option<Joints> {
         let SolutionMethod::Numeric { framed: Some(framed), free, .. } = &self.form else {
             return None;
         };
+        let first = self.before_arm();
+        let moving = &free[free.partition_point(|joint| *joint < first)..];
         let mut left = numeric::STEPS;
-        let (joints, miss) = numeric::solve(framed, free, pose, from, &mut left);
+        let (joints, miss) = numeric::solve(framed, moving, pose, from, &mut left);
         (miss < tolerance && self.verified(&joints, pose, tolerance.max(VERIFIED)))
             .then_some(joints)
     }

@@ -124,7 +124,7 @@ pub fn of(task: &Move, limits: &AxisLimits) -> Result<MoveLimits, Unreachable> {
             (true, !turns || coordinates(task, limits).is_some())
         }
         Interpolation::Tip(_) => (false, false),
-        Interpolation::TipAndAxis => (true, !turns),
+        Interpolation::TipAndAxis | Interpolation::TipAndFrame(_) => (true, !turns),
     };
     if straight_axes {
         found.straight(task, coordinates(task, limits));

@@ -7,7 +7,7 @@ mod round;
 mod spline;
 mod stance;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use post_machine::kinematics::{Chain, Joints, Pose};
 
 pub use chords::{arc_chords, chords, nearest_share, piece_ends};
@@ -33,6 +33,10 @@ pub enum Interpolation {
     Tip(Curve),
     /// The tip straight, the tool axis on the great circle (vectors: G43.5, ORIVECT, LN).
     TipAndAxis,
+    /// The tip straight, the tool as a whole turned evenly about one direction by this vector: right-handed, its length the
+    /// angle, radians, part frame (robots: MoveL, LIN, movel). Its axis is on no great circle where the tool turns about
+    /// itself too.
+    TipAndFrame(Vector3<f64>),
 }
 
 impl Interpolation {
@@ -42,8 +46,8 @@ impl Interpolation {
         let Some(tip) = self.tip(ends, t) else {
             return chain.forward(&joints_between(ends, t));
         };
-        if *self == Self::TipAndAxis {
-            return on_great_circle(ends, tip, t);
+        if let Some(pose) = self.led(ends, tip, t) {
+            return pose;
         }
         if !turns(chain, ends) {
             return Pose { tip, ..ends[1].pose };
@@ -51,6 +55,29 @@ impl Interpolation {
         // Rotary axes alone say where the tool points.
         let pose = chain.forward(&joints_between(ends, t));
         Pose { tip, ..pose }
+    }
+
+    /// The way of a robot's control that leads the tool straight between stands told by the tool axis and a direction across
+    /// it, unit vectors, part frame.
+    pub fn led_straight(from: [Vector3<f64>; 2], to: [Vector3<f64>; 2]) -> Self {
+        let frame = |[axis, across]: [Vector3<f64>; 2]| {
+            let basis = Matrix3::from_columns(&[across, axis.cross(&across), axis]);
+            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(basis))
+        };
+        Self::TipAndFrame((frame(to) * frame(from).inverse()).scaled_axis())
+    }
+
+    /// The pose with its tip on `tip` at `t`, where the control leads the directions of the tool too.
+    fn led(&self, ends: [&Stance; 2], tip: Vector3<f64>, t: f64) -> Option<Pose> {
+        match self {
+            Self::TipAndAxis => Some(on_great_circle(ends, tip, t)),
+            Self::TipAndFrame(turn) => {
+                let turned = UnitQuaternion::from_scaled_axis(turn * t);
+                let Pose { axis, edge, .. } = ends[0].pose;
+                Some(Pose { tip, axis: turned * axis, edge: turned * edge })
+            }
+            Self::Axes | Self::Tip(_) => None,
+        }
     }
 
     /// The tip at `t`, mm, part frame, where the control leads the tip; none where it leads the axes.
@@ -64,7 +91,7 @@ impl Interpolation {
     pub fn curve(&self) -> &Curve {
         match self {
             Self::Tip(curve) => curve,
-            Self::Axes | Self::TipAndAxis => &Curve::Straight,
+            Self::Axes | Self::TipAndAxis | Self::TipAndFrame(_) => &Curve::Straight,
         }
     }
 

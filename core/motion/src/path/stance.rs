@@ -1,13 +1,16 @@
 //! Where the axes stand on the way, as well as the tool.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use post_machine::kinematics::{Joints, Pose, Solver, Turns, Unreachable};
 
-use super::{Interpolation, Stance, joints_between, on_great_circle};
+use super::{Interpolation, Stance, joints_between};
 
 /// How far the tool axis may miss where the control leads it by vectors, radians: the axes of the ends reach theirs, so
 /// that more than rounding means that the great circle between them leaves what the axes can reach.
 const MISS: f64 = 1e-7;
+
+/// How far a tool that is led as a whole may miss, mm, its frame on the arm of the search.
+const STANDS: f64 = 1e-6;
 
 impl Interpolation {
     /// Axis values at `t` from 0 to 1 of the way's own parameter, mm and radians: [`Interpolation::stance_at`] without its pose.
@@ -24,8 +27,8 @@ impl Interpolation {
         let Some(tip) = self.tip(ends, t) else {
             return Ok(joints_between(ends, t));
         };
-        if *self == Self::TipAndAxis {
-            return nearest(solver, &on_great_circle(ends, tip, t), near);
+        if let Some(pose) = self.led(ends, tip, t) {
+            return self.follow(solver, ends, &pose, t, near);
         }
         placed(solver, ends, tip, t).map(|(joints, _)| joints)
     }
@@ -33,8 +36,8 @@ impl Interpolation {
     /// Axis values, tip and tool axis at `t` from 0 to 1 of the way's own parameter.
     ///
     /// Where the control leads the axes all go linearly. Where it leads the tip, the rotary axes go linearly and the
-    /// linear ones follow from the tip; where it leads the tool axis too, the rotary axes are the solution nearest to
-    /// `near`, the axis values a little before, which nothing else asks for.
+    /// linear ones follow from the tip; where it leads the tool axis or the whole tool too, the axes are the solution
+    /// nearest to `near`, the axis values a little before, which nothing else asks for.
     ///
     /// # Errors
     /// The axes cannot follow: a great circle leads out of what they reach, or they span no volume there.
@@ -51,14 +54,37 @@ impl Interpolation {
             let pose = chain.forward(&joints);
             return Ok(Stance { joints, pose });
         };
-        if *self == Self::TipAndAxis {
-            let pose = on_great_circle(ends, tip, t);
-            let joints = nearest(solver, &pose, near)?;
+        if let Some(pose) = self.led(ends, tip, t) {
+            let joints = self.follow(solver, ends, &pose, t, near)?;
             return Ok(Stance { joints, pose });
         }
         let (joints, turns) = placed(solver, ends, tip, t)?;
         let pose = chain.pose(&joints, &turns);
         Ok(Stance { joints, pose })
+    }
+
+    /// The axis values next to `near` at a pose of a way on which the control leads the directions of the tool.
+    fn follow(
+        &self,
+        solver: &Solver,
+        ends: [&Stance; 2],
+        pose: &Pose,
+        t: f64,
+        near: &Joints,
+    ) -> Result<Joints, Unreachable> {
+        let Self::TipAndFrame(turn) = self else {
+            return nearest(solver, pose, near);
+        };
+        let [axis, across] = solver.stand(&ends[0].joints).ok_or(Unreachable::Linear)?;
+        let turned = UnitQuaternion::from_scaled_axis(turn * t);
+        let stand = Pose { tip: pose.tip, axis: turned * axis, edge: turned * across };
+        let missed = Unreachable::Numeric { miss: STANDS };
+        // A rail goes evenly beside the arm.
+        let evenly = joints_between(ends, t);
+        let mut near = *near;
+        let front = solver.before_arm();
+        near[..front].copy_from_slice(&evenly[..front]);
+        solver.search_stand(&stand, &near, STANDS).ok_or(missed)
     }
 
     /// [`Interpolation::stance_at`] of each of `shares`, one after the other, the first `near` those axis values and the

@@ -231,13 +231,13 @@ impl TimeLaw {
 pub(super) struct LawStance {
     /// Axis values, mm and radians.
     pub joints: Joints,
-    /// Tip and tool axis where the control leads both by vectors; else they are what the axis values make.
+    /// Tip and tool axis where the control leads both by vectors or as a whole; else they are what the axis values make.
     pub pose: Option<Pose>,
 }
 
 /// Where the machine stands at a place of a move.
 fn along(task: &Move, t: f64, near: &Joints) -> Result<LawStance, Unreachable> {
-    if task.way == Interpolation::TipAndAxis {
+    if matches!(task.way, Interpolation::TipAndAxis | Interpolation::TipAndFrame(_)) {
         let Stance { joints, pose } = stance(task, t, near)?;
         return Ok(LawStance { joints, pose: Some(pose) });
     }

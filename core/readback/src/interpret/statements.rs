@@ -108,7 +108,12 @@ fn obey(control: &mut ControlState, name: &str, meaning: Meaning, terms: &[NcTer
     match meaning {
         Meaning::Nothing => {}
         Meaning::JointMove => return joint_move(control, name, terms),
-        Meaning::PoseMove => return pose_move(control, name, terms),
+        Meaning::StraightMove => return straight_move(control, name, terms),
+        Meaning::PoseMove => {
+            let message =
+                format!("{name} is no straight move, and how it comes to its pose is not followed");
+            return Err(control.refuse("nc-statement", message));
+        }
         Meaning::Dwell => {
             let event = ProgramEvent::Dwell { time: due(control)?, revolutions: false };
             control.tell(event);
@@ -386,22 +391,19 @@ fn speed_of(speed: &str, switches: &[NcTerm]) -> Option<Pace> {
 }
 
 /// Leads the tool straight to the pose that the statement says, in the frame of the machine.
-fn pose_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> Answer<()> {
+fn straight_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> Answer<()> {
     let arguments = match terms {
         [NcTerm::Group(b'(', inside)] => parts(inside),
         _ => parts(terms),
     };
     let not_read = |control: &ControlState| {
-        let message = format!(
-            "the pose of {name} is not written as it is read here, or it is no straight move to one"
-        );
+        let message = format!("the pose of {name} is not written as it is read here");
         control.refuse("nc-statement", message)
     };
     let Some((first, rest)) = arguments.split_first() else {
         return Err(not_read(control));
     };
-    let straight = matches!(name, "MOVEL" | "LIN");
-    let (pose, behind) = match first {
+    let (target, behind) = match first {
         [NcTerm::Group(b'[', inside), behind @ ..] => (target_pose(inside), behind),
         [NcTerm::Group(b'{', inside), behind @ ..] => (named_pose(inside), behind),
         [NcTerm::Name(p), NcTerm::Group(b'[', inside), behind @ ..] if p == "P" => {
@@ -409,15 +411,12 @@ fn pose_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> Answer
         }
         _ => (None, &first[..0]),
     };
-    let (Some(pose), true) = (pose, straight) else {
+    let Some(PoseTarget { pose, beside }) = target else {
         return Err(not_read(control));
     };
-    let pace = match (name, control.path_velocity) {
-        ("LIN", Some(velocity)) => {
-            pace(control, name, behind, rest)?;
-            Pace::Tip(60.0 * 1000.0 * velocity)
-        }
-        _ => pace(control, name, behind, rest)?,
+    let pace = match (pace(control, name, behind, rest)?, control.path_velocity) {
+        (Pace::Rapid, Some(velocity)) => Pace::Tip(60.0 * 1000.0 * velocity),
+        (said, _) => said,
     };
     if pace == Pace::Rapid {
         let message = format!("{name} does not say how fast it leads the tool");
@@ -429,7 +428,12 @@ fn pose_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> Answer
         axis: -frame,
         edge: pose.rotation * Vector3::x(),
     };
-    let joints = control.state.solver.search_stand(&wanted, &control.at.joints, STANDS);
+    let mut start = control.at.joints;
+    for position in &beside {
+        let axis = axis_of(control, position)?;
+        start[axis] = control.shown(axis, position.value);
+    }
+    let joints = control.state.solver.search_stand(&wanted, &start, STANDS);
     let Some(joints) = joints else {
         let message = format!("the joints do not reach the pose of {name} from where they stand");
         return Err(control.refuse("nc-reach", message));
@@ -438,10 +442,37 @@ fn pose_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> Answer
     control.relies_on_nothing_left();
     set_pace(control, pace, &joints);
     let from = control.at;
+    let solver = &control.state.solver;
+    let stands = solver.stand(&from.joints).zip(solver.stand(&joints));
+    let way = stands
+        .map_or(Interpolation::TipAndAxis, |(from, to)| Interpolation::led_straight(from, to));
     control.said |= (1 << control.machine.axes.len()) - 1;
     control.stand(&joints);
-    control.moved(MotionKind::Feed, Interpolation::TipAndAxis, from);
+    control.moved(MotionKind::Feed, way, from);
     Ok(())
+}
+
+/// Where a statement leads the tool.
+#[derive(Clone, Debug)]
+struct PoseTarget {
+    /// The frame of the tool in that of the machine, mm.
+    pose: Isometry3<f64>,
+    /// Where axes beside the arm go meanwhile; those that are not said stand.
+    beside: Vec<JointPosition>,
+}
+
+/// The axis of the machine that a robot's control leads to a position.
+fn axis_of(control: &ControlState, position: &JointPosition) -> Answer<usize> {
+    let JointPosition { place, value } = *position;
+    let axis = control.machine.axes.iter().position(|axis| arm_axis(&axis.name) == Some(place));
+    axis.ok_or_else(|| {
+        let message = format!(
+            "{} has no axis {} of a robot, and the program leads it to {value}",
+            control.machine.name,
+            place + 1
+        );
+        control.refuse("nc-axis", message)
+    })
 }
 
 /// Numbers of a list, `count` of them.
@@ -451,7 +482,7 @@ fn numbers<const N: usize>(terms: &[NcTerm]) -> Option<[f64; N]> {
 }
 
 /// `[[800,0,700],[0,0,1,0],[0,0,0,0],[9E9,..]]`: mm, and a quaternion with its scalar first.
-fn target_pose(inside: &[NcTerm]) -> Option<Isometry3<f64>> {
+fn target_pose(inside: &[NcTerm]) -> Option<PoseTarget> {
     let lists = parts(inside);
     let [
         [NcTerm::Group(b'[', place)],
@@ -464,52 +495,57 @@ fn target_pose(inside: &[NcTerm]) -> Option<Isometry3<f64>> {
     };
     let [w, i, j, k] = numbers(turn)?;
     let turn = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 0.5)?;
-    let alone = numbers::<ARM_JOINTS>(beside)?.iter().all(|value| *value >= NO_AXIS);
-    alone.then_some(Isometry3::from_parts(Vector3::from(numbers::<3>(place)?).into(), turn))
+    let beside = numbers::<ARM_JOINTS>(beside)?.into_iter().enumerate();
+    let beside = beside.filter(|(_, value)| *value < NO_AXIS);
+    Some(PoseTarget {
+        pose: Isometry3::from_parts(Vector3::from(numbers::<3>(place)?).into(), turn),
+        beside: beside
+            .map(|(place, value)| JointPosition { place: ARM_JOINTS + place, value })
+            .collect(),
+    })
 }
 
-/// `{X 800,Y 0,Z 700,A 0,B 90,C 0}`: mm, and degrees about Z, then about the new Y, then about the new X.
-fn named_pose(inside: &[NcTerm]) -> Option<Isometry3<f64>> {
+/// `{X 800,Y 0,Z 700,A 0,B 90,C 0,E1 1500}`: mm, and degrees about Z, then about the new Y, then about the new X.
+fn named_pose(inside: &[NcTerm]) -> Option<PoseTarget> {
     let mut said = [None; 6];
+    let mut beside = Vec::new();
     for part in parts(inside) {
         let [NcTerm::Name(name), NcTerm::Number(number)] = part else {
             return None;
         };
+        if name.len() == 2 {
+            let place = arm_axis(name).filter(|place| *place >= ARM_JOINTS)?;
+            beside.push(JointPosition { place, value: number.value });
+            continue;
+        }
         let place = "XYZABC".find(name.as_str()).filter(|_| name.len() == 1)?;
         said[place] = Some(number.value);
     }
     let [x, y, z, a, b, c] = said;
     let [a, b, c] = [a?, b?, c?].map(f64::to_radians);
     let turn = UnitQuaternion::from_euler_angles(c, b, a);
-    Some(Isometry3::from_parts(Vector3::new(x?, y?, z?).into(), turn))
+    Some(PoseTarget { pose: Isometry3::from_parts(Vector3::new(x?, y?, z?).into(), turn), beside })
 }
 
 /// `p[0.8,0,0.7,0,3.14,0]`: metres, and a turn about its own direction, radians.
-fn rotated_pose(inside: &[NcTerm]) -> Option<Isometry3<f64>> {
+fn rotated_pose(inside: &[NcTerm]) -> Option<PoseTarget> {
     let [x, y, z, i, j, k] = numbers(inside)?;
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(i, j, k));
-    Some(Isometry3::from_parts((Vector3::new(x, y, z) * 1000.0).into(), turn))
+    let pose = Isometry3::from_parts((Vector3::new(x, y, z) * 1000.0).into(), turn);
+    Some(PoseTarget { pose, beside: Vec::new() })
 }
 
 /// Leads the axes of the machine to the positions.
 fn go(control: &mut ControlState, target: &JointTarget, pace: Pace) -> Answer<()> {
     let mut joints = control.at.joints;
     let mut said = 0;
-    for JointPosition { place, value } in &target.positions {
-        let mut axes = control.machine.axes.iter();
-        let Some(axis) = axes.position(|axis| arm_axis(&axis.name) == Some(*place)) else {
+    for position in &target.positions {
+        let axis = match axis_of(control, position) {
             // A list has all joints of an arm, whether the machine file has them or not.
-            if *value == 0.0 && !target.some {
-                continue;
-            }
-            let message = format!(
-                "{} has no axis {} of a robot, and the program leads it to {value}",
-                control.machine.name,
-                place + 1
-            );
-            return Err(control.refuse("nc-axis", message));
+            Err(_) if position.value == 0.0 && !target.some => continue,
+            axis => axis?,
         };
-        joints[axis] = control.shown(axis, *value);
+        joints[axis] = control.shown(axis, position.value);
         said |= 1 << axis;
     }
     // Some axes alone go to positions of the machine; all of them to a point of the program.

@@ -129,7 +129,7 @@ impl AxisLimitCheck {
                     }
                 }
             }
-            Interpolation::Tip(_) => {
+            Interpolation::Tip(_) | Interpolation::TipAndFrame(_) => {
                 let mut last = [motion.from.joints; 2];
                 for (place, joints) in looked(motion).enumerate() {
                     for joint in 0..machine.axes.len() {
@@ -345,7 +345,14 @@ impl AxisLimitCheck {
 fn looks(motion: &Motion) -> u32 {
     let turns = match motion.way.curve() {
         Curve::Arc { sweep, .. } => libm::fabs(*sweep) / TAU,
-        _ => 1.0,
+        // Axes of an arm go no straighter than the tool turns, nor than they do themselves.
+        Curve::Straight => {
+            let ends = motion.from.joints.iter().zip(&motion.to.joints);
+            let axes = motion.state.solver.chain().joints().iter().zip(ends);
+            let turns = axes.filter(|(axis, _)| axis.rotary).map(|(_, (from, to))| to - from);
+            turns.map(libm::fabs).sum::<f64>() / TAU
+        }
+        Curve::Spline(_) => 1.0,
     };
     // Of a short arc a parabola needs three places.
     let looks = libm::ceil(turns * f64::from(LOOKS)) as u32;

@@ -111,7 +111,7 @@ pub(super) fn motion(
     }
     let at = |t| ToolPlace::new(&motion.at(t), along);
     let first = || first_pieces(motion.way.curve(), turns.most).unwrap_or(1);
-    // Neither on a curve nor along great circles do the axis values alone say where the tool points.
+    // Neither on a curve nor where the tool is led as a whole or along great circles do the axis values alone say where it points.
     if !matches!(motion.way, Interpolation::Axes | Interpolation::Tip(Curve::Straight)) {
         return chop(at, [at(0.0), at(1.0)], first(), sag, places);
     }

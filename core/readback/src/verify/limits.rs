@@ -70,7 +70,7 @@ fn on_way(machine: &Machine, place: usize, motion: &Motion) -> Option<Joints> {
         Interpolation::Tip(Curve::Straight) => {
             limit.passed_keeping_tip(&motion.state.solver, 0.0, ends)
         }
-        Interpolation::Tip(_) | Interpolation::TipAndAxis => {
+        Interpolation::Tip(_) | Interpolation::TipAndAxis | Interpolation::TipAndFrame(_) => {
             let mut places = vec![motion.from.joints];
             places.extend(looked(motion));
             let last = places.len() - 1;

@@ -53,6 +53,7 @@ mod mutations;
 mod names;
 mod new;
 mod order;
+mod orientation;
 mod part_place;
 mod place;
 mod plan_rounds;

@@ -31,6 +31,7 @@ mod nc_to_cl;
 pub mod old_summary;
 mod one_program;
 pub mod operations;
+mod orientation;
 pub mod other_dialect;
 mod other_language;
 pub mod place;

@@ -14,7 +14,7 @@ use post_plugin::{Accuracy, Tolerance, Units, Value};
 use post_posting::ProgramPreview;
 use post_posting::report::PluginUse;
 
-use super::plugin_folders;
+use super::{orientation, plugin_folders};
 use crate::files::{PathArg, standard};
 use crate::session::Session;
 
@@ -88,14 +88,9 @@ fn option<T>(
 ) -> Option<T> {
     let plugin = finder.find(&machine.control.dialect).ok()?;
     let declared = plugin.options().iter().find(|spec| spec.key == key)?;
-    let mut given = machine.control.options.iter();
-    take(match given.find(|given| given.key == key).map(|given| &given.value) {
-        Some(OptionValue::Flag(flag)) => Value::Flag(*flag),
-        Some(OptionValue::Integer(number)) => Value::Integer(*number),
-        Some(OptionValue::Number(number)) => Value::Number(*number),
-        Some(OptionValue::Text(text)) => Value::Text(text),
-        None => declared.default,
-    })
+    let options = orientation::options(&plugin, &machine.control).ok()?;
+    let given = options.iter().find(|(given, _)| given == key);
+    take(given.map_or(declared.default, |(_, value)| value.as_value()))
 }
 
 /// What programs of a machine rely on at its control, a sentence each, as its dialect tells it.
@@ -140,6 +135,7 @@ pub fn dialect_knowing(
         vec![diagnostic(&fault, &control.options, place)]
     };
     let plugin = finder.find(&control.dialect).map_err(fault)?;
+    let options = orientation::options(&plugin, control).map_err(|fault| vec![*fault])?;
     let setup = ProgramSetup {
         program: program.to_owned(),
         // Without a CL file there is no part: the axes move one by one.
@@ -176,7 +172,7 @@ pub fn dialect_knowing(
                 travel: None,
             }))
             .collect(),
-        options: given(&control.options),
+        options,
         cl_file: cl_file.map(cl_name).unwrap_or_default(),
         accuracy: Some(Accuracy {
             cut: Tolerance {
@@ -237,7 +233,7 @@ pub fn plain_model(finder: &Finder, name: &str) -> Result<OpenedModel, Vec<Diagn
         .map_err(|fault| vec![diagnostic(&fault, &[], None)])
 }
 
-fn given(options: &[GivenOption]) -> Vec<(String, GivenValue)> {
+pub(crate) fn given(options: &[GivenOption]) -> Vec<(String, GivenValue)> {
     options
         .iter()
         .map(|option| {

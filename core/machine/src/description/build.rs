@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::echoes;
-use super::file::{ControlFile, MachineFile, Rapid, Tcp};
+use super::file::{ControlFile, MachineFile, Moves, Orientation, Rapid, Tcp};
 use super::keys::typed;
 use super::layers::{MachineSources, Merged, Source, overlay};
 use super::limits::{
@@ -445,6 +445,7 @@ impl Builder<'_> {
         if control.tcp == Some(Tcp::Control) {
             self.check_tip_words(axes, file.chain.span());
         }
+        self.check_orientation(control, file.control.span());
         self.check_rapid(axes, file);
         self.check_turns(axes, file.chain.span());
         options
@@ -468,7 +469,11 @@ impl Builder<'_> {
             feed_length: file.feed_length,
             tcp_feed_length: file.tcp_feed_length,
             inverse_time: file.inverse_time,
-            moves: file.moves,
+            moves: match file.orientation.is_some_and(Orientation::is_whole) {
+                true => Moves::Straight,
+                false => file.moves,
+            },
+            orientation: file.orientation,
             rapid: file.rapid,
             tool_length: file.tool_length,
             cycles: file.cycles,
@@ -583,6 +588,22 @@ impl Builder<'_> {
             let help = "an axis that turns without end says cyclic = true; of the others less travel is rarely missed";
             self.fault("machine-travel", span, message, help);
         }
+    }
+
+    /// A vector is told where the control keeps the tip; values of axes are no pose.
+    fn check_orientation(&mut self, control: &ControlFile, span: Range<usize>) {
+        let (message, help) = match control.orientation {
+            Some(Orientation::Vector) if control.tcp != Some(Tcp::Control) => (
+                "[control] orientation = \"vector\" is told a control that keeps the tip",
+                "tcp = \"control\"; or orientation = \"axes\"",
+            ),
+            Some(Orientation::Axes) if control.moves == Moves::Straight => (
+                "[control] orientation = \"axes\" tells no pose, and moves = \"straight\" leads the tool to poses",
+                "leave one of them out",
+            ),
+            _ => return,
+        };
+        self.fault("machine-tcp", span, message.to_owned(), help);
     }
 
     /// A rapid is written as a feed move at the feed of its slowest axis, so that each must have one.

@@ -515,6 +515,31 @@ words! {
 }
 
 words! {
+    /// What a program tells of where the tool points.
+    Orientation {
+        /// The values of the rotary axes.
+        Axes "axes",
+        /// The direction of the tool as a vector, under tool centre point control: I J K, A3= B3= C3=, TX TY TZ.
+        Vector "vector",
+        /// How the tool as a whole stands, in straight moves: turned about its Z, then its new Y, then its new X, degrees.
+        AbcZyx "abc-zyx",
+        /// The same by turns about X, then Y, then Z of the frame that stand, degrees.
+        Wpr "wpr",
+        /// The same as a quaternion.
+        Quaternion "quaternion",
+        /// The same as the direction that the tool has been turned about, as long as the turn, radians.
+        RotationVector "rotation-vector",
+    }
+}
+
+impl Orientation {
+    /// It tells how the tool as a whole stands, not its axis alone.
+    pub fn is_whole(self) -> bool {
+        !matches!(self, Self::Axes | Self::Vector)
+    }
+}
+
+words! {
     /// How the holes of drilling cycles are written.
     Cycles = Native {
         /// As cycles of the control where it has them and they do what the CL file asks for, else as moves.
@@ -547,8 +572,12 @@ keys! {
         feed: FeedMode,
         /// What F means under inverse time; minutes if not said.
         inverse_time: InverseTime,
-        /// How a robot's control leads cuts; joints if not said.
+        /// How a robot's control leads cuts; joints if not said, straight where orientation tells how the tool as a whole
+        /// stands.
         moves: Moves,
+        /// What the program tells of where the tool points, in a dialect that has words for it; axes if not said, in
+        /// straight moves what the language has.
+        orientation: Option<Orientation>,
         /// The length that the control divides by F when it does not keep the tip; if not said as the dialect has it:
         /// combined for Brother, Fanuc, Hurco, Mazak, Mitsubishi, Okuma and Syntec, linear for the others.
         feed_length: Option<FeedLength>,

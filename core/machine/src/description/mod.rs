@@ -61,7 +61,7 @@ pub use cl_words::WordRule;
 pub use errors::{ErrorTable, ErrorUnits};
 pub use file::{
     ArcForm, ArcSplit, CompensationOnCentre, Cycles, EdgeSource, FeedLength, FeedMode, Insert,
-    InverseTime, Method, Moves, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp,
+    InverseTime, Method, Moves, Orientation, OutputUnits, Placement, Pole, Print, Rapid, Side, Tcp,
     TcpFeedLength, ToolLength,
 };
 pub use frame::Frame;
@@ -374,6 +374,8 @@ pub struct ControlRules {
     pub inverse_time: InverseTime,
     /// How a robot's control leads cuts.
     pub moves: Moves,
+    /// What the program tells of where the tool points; none: what its dialect writes by itself.
+    pub orientation: Option<Orientation>,
     /// How a rapid is written in which a rotary axis turns, or an axis would pass its largest feed; none: as the control
     /// asks for ([`Machine::rapid`]).
     pub rapid: Option<Rapid>,

@@ -190,3 +190,42 @@ fn belts_that_axes_share_keep_their_largest_feed() {
     }
     assert!(held > 8, "{held}");
 }
+
+/// A drive that leaves its travel at both ends is told of at each by itself, and what is told of the farthest place is of one
+/// place: where the axes stand, the drive with them, and by how much it is over.
+#[test]
+fn a_drive_beyond_both_ends_is_told_end_by_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let post = |arguments: &[&str]| {
+        common::run(common::command().current_dir(folder.path()).args(arguments), b"")
+    };
+    assert_eq!(post(&["new", "mill", "--class", "three-axis"]).code, 0);
+    let file = folder.path().join("mill.toml");
+    let machine = std::fs::read_to_string(&file).unwrap();
+    let drive = "\n[[drive]]\nname = \"Q\"\nis = \"X + Y\"\ntravel = [-10, 20]\n";
+    std::fs::write(&file, machine + drive).unwrap();
+    let points = [[10, 15], [0, 0], [-10, -4], [0, 0], [20, 8], [0, 0], [-20, -3], [0, 0]];
+    let cuts: String = points.into_iter().map(|[x, y]| format!("GOTO/{x},{y},10\n")).collect();
+    let cl = format!(
+        "UNITS/MM\nLOADTL/1\nSPINDL/RPM,900,CLW\nRAPID\nGOTO/0,0,40\nFEDRAT/600,MMPM\nGOTO/0,0,10\n{cuts}RAPID\nGOTO/0,0,40\nSPINDL/OFF\nFINI\n"
+    );
+    std::fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let run = post(&["-q", "-m", "mill.toml", "--tool-length", "40", "-o", "-", "part.cls"]);
+    assert_eq!(run.code, 1, "{}", run.err);
+    let mut ends: Vec<f64> = Vec::new();
+    for (_, told) in run
+        .err
+        .match_indices("the farthest with Q at ")
+        .map(|(at, with)| (at, &run.err[at + with.len()..]))
+    {
+        // `28.000 mm (X 20.000 mm, Y 8.000 mm), passed by 8.000 mm, on line 12`
+        let words = told.lines().next().unwrap().replace(['(', ')', ','], "");
+        let numbers: Vec<f64> = words.split(' ').filter_map(|word| word.parse().ok()).collect();
+        let [q, x, y, by, _] = numbers[..] else { panic!("{told}") };
+        assert!((x + y - q).abs() < 0.0021, "{told}");
+        assert!((by - (q - 20.0).max(-10.0 - q)).abs() < 0.0011, "{told}");
+        ends.push(q);
+    }
+    ends.sort_by(f64::total_cmp);
+    assert!(matches!(ends[..], [low, high] if low < -10.0 && high > 20.0), "{}", run.err);
+}

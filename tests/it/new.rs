@@ -37,6 +37,23 @@ fn post_in(folder: &Path, arguments: &[&str], answers: &str) -> Run {
 /// A small job that every class can make: the tool upright.
 const JOB: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/100,MMPM\nGOTO/0,0,10\nGOTO/20,5,10\nEND\nFINI\n";
 
+/// Lengths in metres, as DH tables have them, are no arm of a fraction of a millimetre.
+#[test]
+fn lengths_of_an_arm_in_metres_are_refused() {
+    let folder = folder();
+    let new = ["new", "arm", "--class", "robot", "--arm"];
+    let told = |arm: &str| post_in(folder.path(), &[&new[..], &[arm]].concat(), "");
+    let metres = told("0.15,-0.115,0,0.445,0.7,0.795,0.085");
+    assert_eq!(metres.code, 2);
+    let said = "here they are in millimetres, 150,-115,0,445,700,795,85";
+    assert!(metres.err.contains(said), "{}", metres.err);
+    assert!(!folder.path().join("arm.toml").exists());
+    assert_eq!(told("150,-115,0,445,700,795,85").code, 0);
+    let text = fs::read_to_string(folder.path().join("arm.toml")).unwrap();
+    let beside = text.lines().filter(|line| line.contains('#') && !line.starts_with('#'));
+    beside.for_each(|line| assert!(line.contains(" # "), "{line}"));
+}
+
 #[test]
 fn every_class_passes_the_check_and_makes_a_program() {
     let help = post_in(folder().path(), &["new", "--help"], "").out;

@@ -312,6 +312,26 @@ impl DependentLimit {
         )
     }
 
+    /// What passes it at `joints`, as a list of such places has it, and on which side: a drive that leaves its travel at one
+    /// end is another fault than at the other. None where it is only not proven to hold.
+    ///
+    /// `J1 at 144.900 mm (X 87.000 mm, Y 82.000 mm), passed by 5.100 mm,`
+    pub fn passed_at(&self, machine: &Machine, joints: &Joints) -> Option<(bool, String)> {
+        let by = self.excess(joints);
+        if by <= ROUNDED {
+            return None;
+        }
+        let stands = self.stance(machine, joints);
+        let Rule::Reach(leg) = &self.rule else {
+            return Some((false, format!("{stands}, passed by {by:.3},")));
+        };
+        let value = leg.value(joints)?;
+        let sign = if leg.turns() { "°" } else { " mm" };
+        let above = leg.travel.is_some_and(|[_, last]| value > last);
+        let (name, shown) = (&leg.name, leg.reading(value));
+        Some((above, format!("{name} at {shown:.3}{sign} ({stands}), passed by {by:.3}{sign},")))
+    }
+
     /// By how much it is passed at `joints`, mm or degrees; zero where that is not known.
     pub fn excess(&self, joints: &Joints) -> f64 {
         (-self.margin(joints)).max(0.0)

@@ -61,7 +61,7 @@ pub(crate) fn no_way_off(machine: &Machine) -> Option<Diagnostic> {
                 machine.name
             ),
         )
-        .help("[control] leave says how far the tool goes back along its own axis, and where the axes go then; [control] park with a position for every axis leaves the way there to you")
+        .help("[control] leave = { along = \"tool\", distance = 30 } leads the tool back along its own axis by so many mm, and `then = { A = 0 }` in it says where axes go from there; [control] park with a position for every axis leaves the way there to you")
     })
 }
 
@@ -119,7 +119,10 @@ pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic
                 machine.name
             ),
         )
-        .help("this machine is solved numerically, from the point before: where the part sits (--mount), or a point between may help"),
+        .help(match machine.solver(0.0).is_ok_and(|solver| solver.has_arm()) {
+            true => "no stand of the arm was found that brings the tip here and points the tool so: does the part lie in its reach (--mount; lengths are mm), and does [tool] axis lead from the tip to the holder?",
+            false => "this machine is solved numerically, from the point before: where the part sits (--mount), or a point between may help",
+        }),
         PlacementError::Unreachable(Unreachable::Plane { miss }) => Diagnostic::error(
             "out-of-reach",
             format!(
@@ -197,16 +200,19 @@ pub(crate) fn beyond_limit(
     joints: &Joints,
     behind: &str,
 ) -> Diagnostic {
-    let (told, by) = (limit.told(machine, joints), limit.excess(joints));
+    let told = limit.told(machine, joints);
     let place = machine.limits.iter().position(|other| other == limit).unwrap_or_default();
-    Diagnostic::error("over-travel", format!("{told}{behind}"))
-        .extreme(LimitExcess {
-            key: LIMITS + place as u64,
-            by,
-            value: format!("{}, passed by {by:.3},", limit.stance(machine, joints)),
+    let fault = Diagnostic::error("over-travel", format!("{told}{behind}"));
+    let fault = match limit.passed_at(machine, joints) {
+        Some((above, value)) => fault.extreme(LimitExcess {
+            key: LIMITS + place as u64 * 2 + u64::from(above),
+            by: limit.excess(joints),
+            value,
             remedy: String::new(),
-        })
-        .help(match limit.leg() {
+        }),
+        None => fault,
+    };
+    fault.help(match limit.leg() {
             Some(_) => "another set-up of the part (--mount); where the tool is retracted or parked, [control] retract = { … }, leave or park that the drives reach",
             None => "another set-up of the part (--mount), another side ([solution] prefer), or a retract before the axes turn",
         })
@@ -450,9 +456,9 @@ pub(crate) fn no_poses(machine: &Machine, writes: Capabilities, plans: bool) -> 
     let message = if !writes.has(Capabilities::POSES) {
         let dialect = &machine.control.dialect;
         format!("[control] moves of {name}: the dialect {dialect} has no poses of a tool")
-    } else if !arm || machine.axes.len() != 6 || machine.axes.iter().any(|axis| axis.carries_part) {
+    } else if !arm || machine.axes.iter().any(|axis| axis.carries_part) {
         format!(
-            "[control] moves of {name}: an arm of six axes alone is led straight, whose tool turns about itself freely"
+            "[control] moves of {name}: an arm of six axes is led straight, by itself or on a rail, whose tool turns about itself freely; axes that carry the part lead joints alone"
         )
     } else if machine.word_map.is_some() || machine.in_face().is_some() {
         format!("[control] moves of {name}: words that are no axis values do not go with poses")

@@ -104,6 +104,9 @@ pub struct NewArguments {
     force: bool,
 }
 
+/// An arm whose longest length is less than this was told in metres, mm.
+const SHORTEST_ARM: f64 = 10.0;
+
 /// Lengths of a robot's arm, mm.
 #[derive(Clone, Copy, Debug)]
 pub struct ArmLengths([f64; ARM_LENGTHS.len()]);
@@ -359,8 +362,18 @@ fn arm(text: &str) -> Result<ArmLengths, String> {
         text.split(',').map(|length| finite(length.trim())).collect::<Result<_, _>>()?;
     let count = lengths.len();
     let names = ARM_LENGTHS.map(|(name, _)| name).join(",");
-    let lengths = lengths.try_into();
-    lengths.map(ArmLengths).map_err(|_| format!("{count} lengths, and {names} are needed"))
+    let longest = lengths.iter().fold(0.0, |longest: f64, length| longest.max(length.abs()));
+    let wrong = format!("{count} lengths, and {names} are needed");
+    let lengths: [f64; ARM_LENGTHS.len()] = lengths.try_into().map_err(|_| wrong)?;
+    if longest < SHORTEST_ARM {
+        let inside =
+            lengths.map(|length| (length * 1e6).round() / 1e3 + 0.0).map(|mm| mm.to_string());
+        return Err(format!(
+            "the longest of these lengths is {longest} mm, and no arm is so short: data sheets and DH tables are often in metres, and here they are in millimetres, {}",
+            inside.join(",")
+        ));
+    }
+    Ok(ArmLengths(lengths))
 }
 
 fn feed(text: &str) -> Result<AxisSetting<f64>, String> {

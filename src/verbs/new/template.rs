@@ -322,7 +322,7 @@ pub fn write(choices: &Choices) -> String {
     let mut line = |said: &str, remark: &str| {
         let _ = match remark {
             "" => writeln!(text, "{said}"),
-            remark => writeln!(text, "{said:<40}# {remark}"),
+            remark => writeln!(text, "{said:<39} # {remark}"),
         };
     };
     head(&mut line, choices);

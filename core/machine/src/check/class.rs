@@ -201,25 +201,30 @@ fn name(machine: &Machine, rotary: &[usize], angles: &[PairMeasure]) -> String {
     // Of more axes that is nobody's name.
     if (2..=3).contains(&free.len()) {
         let free_names: Vec<&String> = free.iter().map(|place| &axis(place).name).collect();
-        let askew: Vec<String> = angles
+        let known: Vec<&PairMeasure> = angles
             .iter()
             .filter(|angle| {
                 let known = |name: &String| name == "tool" || free_names.contains(&name);
                 // A blade axis lies along the tool.
                 let blade = machine.edge.is_some() && angle.value.abs() < SQUARE;
-                known(&angle.from)
-                    && known(&angle.to)
-                    && !blade
-                    && (angle.value - 90.0).abs() > SQUARE
-            })
-            .map(|angle| {
-                format!("{}° between {} and {}", number(angle.value, 3), angle.from, angle.to)
+                known(&angle.from) && known(&angle.to) && !blade
             })
             .collect();
-        text.push_str(&match askew.as_slice() {
-            [] => "; orthogonal".to_owned(),
-            askew => format!("; nutating, {}", askew.join(", ")),
+        let told = |which: &dyn Fn(f64) -> bool, text: &dyn Fn(&PairMeasure) -> String| {
+            let angles = known.iter().filter(|angle| which(angle.value));
+            angles.map(|angle| text(angle)).collect::<Vec<String>>().join(", ")
+        };
+        let parallel = |angle: f64| angle.abs() < SQUARE;
+        let askew = |angle: f64| !parallel(angle) && (angle - 90.0).abs() > SQUARE;
+        let askew = told(&askew, &|angle| {
+            format!("{}° between {} and {}", number(angle.value, 3), angle.from, angle.to)
         });
+        let parallel = told(&parallel, &|angle| format!("{} and {}", angle.from, angle.to));
+        match (askew.as_str(), parallel.as_str()) {
+            ("", "") => text.push_str("; orthogonal"),
+            ("", parallel) => text.push_str(&format!("; parallel are {parallel}")),
+            (askew, _) => text.push_str(&format!("; nutating, {askew}")),
+        }
     }
     text
 }

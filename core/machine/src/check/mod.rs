@@ -193,6 +193,7 @@ fn warnings(
         ));
     }
     warnings.extend(misnamed(machine));
+    warnings.extend(in_metres(machine));
     // A tool that cannot stand upright is not asked for on the part origin: a live tool across a lathe never is there.
     if let Some(volume) = volume.filter(|_| reach.ways_upright > 0) {
         for out in &volume.origin_out {
@@ -210,6 +211,25 @@ fn warnings(
     warnings.extend(machine.axes.iter().flat_map(|axis| axis_warnings(axis, slides)));
     warnings.extend(inverse_warnings(probe, round_trip));
     warnings
+}
+
+/// Lines of an arm no farther than this from its gauge point were told in metres, mm.
+const METRES: f64 = 10.0;
+
+/// Rotary axes that only an arm has.
+const OF_AN_ARM: usize = 5;
+
+/// An arm whose lines all lie within millimetres of its gauge point.
+fn in_metres(machine: &Machine) -> Option<String> {
+    let rotary = machine.axes.iter().filter(|axis| axis.joint.rotary);
+    let apart: Vec<f64> = rotary.map(|axis| (axis.joint.point - machine.gauge).norm()).collect();
+    let farthest = apart.iter().fold(0.0, |most: f64, apart| most.max(*apart));
+    (apart.len() >= OF_AN_ARM && farthest > 0.0 && farthest < METRES).then(|| {
+        format!(
+            "all axes that turn have their points within {} mm of the gauge point: lengths here are mm, and data sheets and DH tables of arms are often in metres",
+            number(farthest, 3)
+        )
+    })
 }
 
 /// What an axis by itself makes a builder look at; on a machine that `slides` linear words count from a work offset.

@@ -147,6 +147,11 @@ impl Poles {
             }
             (_, 2) => {}
             (_, 3) if probe.machine().edge.is_some() => {}
+            _ if probe.solver().has_arm() => {
+                return told(
+                    "not listed: the wrist straight, the arm stretched or folded, the wrist over the first axis; they are met as they come, and the point before decides",
+                );
+            }
             _ if !probe.closed_form() => {
                 return told(
                     "not known: without a closed form they are met as they come, and the point before decides",

@@ -133,8 +133,7 @@ impl Builder<'_> {
             let message = format!(
                 "an axis cannot be called {name}: in the program of every control {meaning}"
             );
-            let help =
-                "rename it, here and in [axis]: X Y Z, U V W and P Q R slide, A B C turn (ISO 841)";
+            let help = "rename it, here and in [axis]: X Y Z, U V W and P Q R slide, A B C turn (ISO 841); robots' dialects have A1 to A6 for the arm and E1 to E6 beside it";
             self.fault("machine-axis", span, message, help);
             return false;
         }

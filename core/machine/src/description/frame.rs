@@ -176,7 +176,9 @@ impl Builder<'_> {
         }
         let moves = |(place, _): &(usize, f64)| !machine.axes[*place].joint.rotary;
         let slides = machine.axes.iter().any(|axis| !axis.joint.rotary);
-        if slides && then.first().is_some_and(|first| !moves(first)) {
+        // A rail under an arm leads the tool no farther off the part.
+        let arm = || machine.solver(0.0).is_ok_and(|solver| solver.has_arm());
+        if slides && !arm() && then.first().is_some_and(|first| !moves(first)) {
             let message =
                 "the first of then is a rotary axis: the tool is still at the part".to_owned();
             let help =

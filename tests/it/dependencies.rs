@@ -50,7 +50,9 @@ fn may_be_had(expression: &str, allowed: &BTreeSet<String>) -> bool {
     let bracketed = expression.contains('(');
     if bracketed {
         let parts = expression.split(" AND ");
-        return parts.map(|part| part.replace(['(', ')'], "")).all(|part| part.split(" OR ").any(every));
+        return parts
+            .map(|part| part.replace(['(', ')'], ""))
+            .all(|part| part.split(" OR ").any(every));
     }
     whole.split(" OR ").any(every)
 }
@@ -80,7 +82,10 @@ fn what_comes_from_outside_may_be_had_under_allowed_licences_and_comes_from_crat
         let licence = text(package, "license");
         assert!(may_be_had(licence, &allowed), "{name} is licensed under {licence}");
         let source = text(package, "source");
-        assert!(source.starts_with("registry+") && source.contains("crates.io-index"), "{name} comes from {source}");
+        assert!(
+            source.starts_with("registry+") && source.contains("crates.io-index"),
+            "{name} comes from {source}"
+        );
         seen += 1;
     }
     assert!(seen > 100, "{seen}");
@@ -97,10 +102,12 @@ fn the_page_on_security_has_a_row_for_each_direct_dependency() {
         .map(|dependency| text(dependency, "name"))
         .collect();
     let of_lock = |name: &str| {
-        let found = packages(&metadata).filter(|package| from_outside(package) && text(package, "name") == name);
+        let found = packages(&metadata)
+            .filter(|package| from_outside(package) && text(package, "name") == name);
         found.map(|package| text(package, "version").split('+').next().unwrap()).max().unwrap()
     };
-    let wanted: BTreeMap<String, String> = names.iter().map(|name| ((*name).to_owned(), of_lock(name).to_owned())).collect();
+    let wanted: BTreeMap<String, String> =
+        names.iter().map(|name| ((*name).to_owned(), of_lock(name).to_owned())).collect();
 
     let page = fs::read_to_string(root().join(PAGE)).unwrap();
     let table = page.split_once("| crate | what for |").unwrap().1;
@@ -118,5 +125,8 @@ fn the_page_on_security_has_a_row_for_each_direct_dependency() {
     let lock = fs::read_to_string(root().join("Cargo.lock")).unwrap();
     let locked = lock.matches("source = \"registry+").count();
     assert!(count <= locked);
-    assert!(page.contains(&format!("{locked} crates in the lock file")), "{locked} crates are in the lock file");
+    assert!(
+        page.contains(&format!("{locked} crates in the lock file")),
+        "{locked} crates are in the lock file"
+    );
 }

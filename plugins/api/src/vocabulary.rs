@@ -382,6 +382,6 @@ codes! {
         /// Where the joints of an arm stand: CJointT().
         JointsNow = 202 "JOINTS_NOW",
         /// The tool of an arm is led straight to a pose, turning evenly about one direction: MoveL, LIN, movel.
-        StraightMove = 203 "STRAIGHT_MOVE",
+        StraightMove = 209 "STRAIGHT_MOVE",
     }
 }

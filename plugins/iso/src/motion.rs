@@ -135,7 +135,7 @@ impl MotionWriter {
 
     /// The plane among these words is in force.
     pub(crate) fn plane_is_among(&mut self, words: &str) {
-        let named = |plane: &&str| words.split_whitespace().any(|word| word == *plane);
+        let named = |plane: &&&str| words.split_whitespace().any(|word| word == **plane);
         if let Some(plane) = self.codes.planes.iter().find(named) {
             self.plane.set(plane);
         }

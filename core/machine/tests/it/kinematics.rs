@@ -62,7 +62,7 @@ fn every_solution_leads_back_to_the_pose() {
             }
             poses += 1;
             let solutions = solver
-                .inverse(&pose, &[0.0; 8], 1e-9)
+                .inverse(&pose, &Joints::default(), 1e-9)
                 .unwrap_or_else(|fault| panic!("round {round}: {fault:?} at {q:?}"));
             for solution in &solutions {
                 let (reached_tip, reached_axis) = reference.forward(solution);

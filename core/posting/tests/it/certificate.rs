@@ -325,7 +325,7 @@ fn the_swing_head_move_of_the_parabolic_paper() {
                     axis: Vector3::new(sine, 0.0, cosine),
                     ..Pose::default()
                 };
-                let solutions = solver.inverse(&pose, &[0.0; 8], 1e-9).unwrap();
+                let solutions = solver.inverse(&pose, &Joints::default(), 1e-9).unwrap();
                 let wanted = |joints: &&Joints| {
                     (joints[4] - FRAC_PI_2).abs() < 1e-9
                         && (joints[5] - a.to_radians()).abs() < 1e-9
@@ -372,11 +372,11 @@ fn blade_deviations(points: &[Pose], centre: f64) -> [f64; 3] {
         tip: Vector3::zeros(),
         axis: Vector3::z(),
     };
-    let solver = Solver::new(reference.chain(), &[0, 1], [0.0; 8]).expect("a closed form");
+    let solver = Solver::new(reference.chain(), &[0, 1], Joints::default()).expect("a closed form");
     let joints: Vec<Joints> = points
         .iter()
         .map(|pose| {
-            let solutions = solver.inverse(pose, &[0.0; 8], 1e-9).expect("in reach");
+            let solutions = solver.inverse(pose, &Joints::default(), 1e-9).expect("in reach");
             // A = acos(uz), the positive one; C = atan2(ux, uy).
             let q = *solutions.iter().find(|q| q[1] > 0.0).expect("A above zero");
             assert!((q[1] - libm::acos(pose.axis.z)).abs() < 1e-9);

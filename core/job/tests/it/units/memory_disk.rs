@@ -1,7 +1,7 @@
 //! The disk in memory: what is written is read, and it is found as on a disk of the system.
 
 use std::fs;
-use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::io::{Read, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
 use post_testkit::randomised;
@@ -35,8 +35,8 @@ fn it_reads_and_writes_as_a_file_of_the_system() {
                 _ => {
                     let mut read = [Vec::new(), Vec::new()];
                     let [mine, other] = &mut read;
-                    ours.by_ref().take(size as u64).read_to_end(mine).unwrap();
-                    theirs.by_ref().take(size as u64).read_to_end(other).unwrap();
+                    (&mut ours as &mut dyn Read).take(size as u64).read_to_end(mine).unwrap();
+                    (&mut theirs as &mut dyn Read).take(size as u64).read_to_end(other).unwrap();
                     assert!(read[0] == read[1]);
                 }
             }
@@ -59,7 +59,8 @@ fn names_lead_where_they_lead_on_a_disk_of_the_system() {
         let mut file = disk::OpenOptions::new().create(true).append(true).open(&path).unwrap();
         file.write_all(name.as_bytes()).unwrap();
     }
-    for name in ["a", "a/b", "a/b/two.toml", "a/../three", "./a//one.toml", "a/four", "three/x", ""] {
+    for name in ["a", "a/b", "a/b/two.toml", "a/../three", "./a//one.toml", "a/four", "three/x", ""]
+    {
         let (ours, theirs) = (Path::new("/room").join(name), there(name));
         assert_eq!(disk::is_file(&ours), theirs.is_file(), "{name}");
         assert_eq!(disk::is_dir(&ours), theirs.is_dir(), "{name}");
@@ -69,7 +70,10 @@ fn names_lead_where_they_lead_on_a_disk_of_the_system() {
     }
     assert_eq!(names("/room/a"), ["b", "one.toml"]);
     assert_eq!(names("room"), ["a", "three"]);
-    assert_eq!(disk::canonicalize("room/./a/b/../one.toml").unwrap(), PathBuf::from("/room/a/one.toml"));
+    assert_eq!(
+        disk::canonicalize("room/./a/b/../one.toml").unwrap(),
+        PathBuf::from("/room/a/one.toml")
+    );
     assert_eq!(disk::metadata("/room/a/five").unwrap_err().kind(), std::io::ErrorKind::NotFound);
     assert!(disk::read_dir("/nowhere").is_err());
     // A file in the making takes the place of another, which stays with whoever has it open.

@@ -1,7 +1,7 @@
 //! The servos of a machine.
 
 use post_machine::description::{Machine, Source, load};
-use post_machine::kinematics::Joints;
+use post_machine::kinematics::{Joints, MAX_AXES};
 use post_machine::servo::{ServoModel, StateSpace, stable};
 use post_motion::servo::fit::named;
 use post_motion::servo::{Follower, Servos};
@@ -32,7 +32,8 @@ denominator = [1, 50]
 #[test]
 fn each_axis_has_its_own() {
     let machine = machine();
-    let start: Joints = [1.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0];
+    let mut start = Joints::default();
+    start[..4].copy_from_slice(&[1.0, 2.0, 3.0, 4.0]);
     let command: Vec<Joints> = (0..500)
         .map(|k| {
             let way = libm::sin(f64::from(k) * 0.02);
@@ -42,7 +43,7 @@ fn each_axis_has_its_own() {
     let mut servos = Servos::new(&machine, 1e-3).unwrap();
     assert_eq!(servos.places().collect::<Vec<_>>(), [0, 2]);
     servos.settle(&start);
-    let mut whole = vec![[9.0; 8]];
+    let mut whole = vec![[9.0; MAX_AXES]];
     servos.follow(&command, &mut whole);
     assert_eq!(whole.len(), 500);
 
@@ -84,10 +85,10 @@ fn periods_are_above_zero_and_up_to_a_second() {
 fn what_is_no_number_does_not_end_the_run() {
     let mut servos = Servos::new(&machine(), 1e-3).unwrap();
     let mut actual = Vec::new();
-    servos.follow(&[[f64::NAN; 8], [f64::INFINITY; 8], [0.0; 8]], &mut actual);
+    servos.follow(&[[f64::NAN; MAX_AXES], [f64::INFINITY; MAX_AXES], [0.0; MAX_AXES]], &mut actual);
     assert!(actual[2][0].is_nan());
-    servos.settle(&[1.0; 8]);
-    servos.follow(&[[1.0; 8]], &mut actual);
+    servos.settle(&[1.0; MAX_AXES]);
+    servos.follow(&[[1.0; MAX_AXES]], &mut actual);
     assert!((actual[0][0] - 1.0).abs() < 1e-12);
 }
 

@@ -95,8 +95,27 @@ impl Bar for PageBar {
     }
 }
 
+/// Verbs that need what only a system has: threads, a clock, other programs, folders to be filled.
+const OF_A_SYSTEM: [&[&str]; 6] =
+    [&["batch"], &["lsp"], &["man"], &["plugin", "new"], &["plugin", "test"], &["view"]];
+
+/// Why this command line cannot be run here.
+fn fault(words: &[String]) -> Option<Diagnostic> {
+    let begins = |verb: &&&[&str]| {
+        verb.len() <= words.len() && verb.iter().eq(words.iter().take(verb.len()))
+    };
+    let verb = OF_A_SYSTEM.iter().find(begins)?.join(" ");
+    let message =
+        format!("post {verb} needs threads, files or programs of a system, and there is none here");
+    Some(Diagnostic::error("option", message).help("it is done by the command post"))
+}
+
 /// Runs the command line of these words, `post` itself not among them.
 pub fn run(words: &[String]) -> Ran {
+    if let Some(fault) = fault(words) {
+        let (printed, said) = Default::default();
+        return Ran { code: 1, printed, said, findings: vec![Finding::from(&fault)] };
+    }
     let found = Arc::default();
     let session = Session::new(Page { found: Arc::clone(&found) });
     let line: Vec<OsString> =

@@ -80,6 +80,14 @@ test("any verb runs on files in memory", async () => {
   assert.equal(predicted.code, 0, JSON.stringify(predicted.findings));
 });
 
+test("a verb that needs a system is refused", async () => {
+  for (const line of ["batch part.cls", "lsp", "view part.cls", "plugin test fanuc"]) {
+    const { code, findings } = await post.run(line.split(" "), { "part.cls": blade });
+    assert.equal(code, 1);
+    assert.match(findings[0].message, /needs threads/);
+  }
+});
+
 test("reading is told as it goes", async () => {
   const seen = [];
   const made = await post.post(long(20_000), "ac-trunnion", { toolLength: 100, progress: (done, of) => seen.push([done, of]) });

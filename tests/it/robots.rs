@@ -96,26 +96,3 @@ fn a_rail_stands_still_where_the_arm_reaches() {
     let far = posted("irb4600-rail", 100.0, &holes(700.0));
     assert!(span(&far, 0) > 1000.0, "the rail goes {}", span(&far, 0));
 }
-
-/// The last axis of a SCARA, whose tool turns, is beyond what a point needs: it stands still, on a plunge and in the cut
-/// behind it, from wherever the arm comes.
-#[test]
-fn the_last_axis_of_a_scara_stands_still() {
-    let folder = tempfile::tempdir().unwrap();
-    let machine = "name = \"SCARA\"\nchain = \"[w b A B Z C (S) t]\"\n[workpiece]\nmount = [350, 0, 0]\n[tool]\ngauge = [600, 0, 300]\nlength_axis = \"none\"\n[axis.A]\nrotary = [0, 0, 1]\npoint = [0, 0, 0]\ntravel = [-130, 130]\nmax_feed = 20000\n[axis.B]\nrotary = [0, 0, 1]\npoint = [325, 0, 0]\ntravel = [-150, 150]\nmax_feed = 30000\n[axis.Z]\nlinear = [0, 0, 1]\ntravel = [-300, 0]\nmax_feed = 60000\n[axis.C]\nrotary = [0, 0, 1]\npoint = [600, 0, 0]\ntravel = [-360, 360]\nmax_feed = 60000\n[control]\ndialect = \"fanuc\"\ntcp = \"post\"\n";
-    let [machine_file, part] = ["scara.toml", "part.cls"].map(|name| folder.path().join(name));
-    fs::write(&machine_file, machine).unwrap();
-    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/-60,0,140\nFEDRAT/800,MMPM\nGOTO/-60,0,100\nGOTO/60,20,100\nRAPID\nGOTO/60,20,140\nSPINDL/OFF\nFINI\n";
-    fs::write(&part, cl).unwrap();
-    let [machine_file, part] = [&machine_file, &part].map(|path| path.to_str().unwrap());
-    let run = post(&["-q", "--verify", "-m", machine_file, "--tool-length", "60", "-o", "-", part]);
-    assert_eq!(run.code, 0, "{}", run.err);
-    let words = run.out.split_whitespace();
-    let of_axis = |word: &&str| {
-        let number = word.strip_prefix('C').and_then(|number| number.parse::<f64>().ok());
-        number.is_some_and(|degrees| degrees != 0.0)
-    };
-    let turned: Vec<&str> = words.filter(of_axis).collect();
-    assert!(turned.is_empty(), "{turned:?}\n{}", run.out);
-    assert!(run.out.matches(" B").count() > 10, "{}", run.out);
-}

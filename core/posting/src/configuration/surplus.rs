@@ -81,16 +81,7 @@ impl ChoiceAxes {
                 }
             }
         }
-        match solver.search_holding(pose, last, solver.surplus(), self.axis_tolerance) {
-            Ok(held) => found.push(held),
-            // A stretched arm leads nowhere from where it stands: what is beyond the pose stands there all the same.
-            Err(_) if spin.is_none() => found.extend(all.iter().filter_map(|joints| {
-                let mut start = *joints;
-                solver.surplus().iter().for_each(|joint| start[*joint] = last[*joint]);
-                solver.search_holding(pose, &start, solver.surplus(), self.axis_tolerance).ok()
-            })),
-            Err(_) => {}
-        }
+        found.extend(solver.search_holding(pose, last, solver.surplus(), self.axis_tolerance));
         let measure = |joints: &Joints| {
             let axes = solver.chain().joints().iter().enumerate();
             let way = |(joint, axis): (usize, &Joint)| {
@@ -322,15 +313,7 @@ impl Trellis {
             if !state.cost.is_way() {
                 continue;
             }
-            // From where a cut begins all ways lead; of those that cost the same the one on which what is beyond the pose stands.
-            let way = if begins { 0 } else { state.branch & (ALONG | HEADING) };
-            let others = |next: &mut Vec<(Joints, u8)>| {
-                let others = self.axes.surplus_next(solver, target, &state.joints);
-                next.extend(others.into_iter().map(|joints| (joints, way)));
-            };
-            if way == 0 {
-                others(&mut next);
-            }
+            let way = state.branch & (ALONG | HEADING);
             if begins || way == ALONG {
                 let goes = self.axes.along_next(solver, target, &state.joints);
                 next.extend(goes.map(|joints| (joints, ALONG)));
@@ -339,8 +322,9 @@ impl Trellis {
                 let goes = self.axes.heading_next(solver, target, &state.joints);
                 next.extend(goes.map(|joints| (joints, HEADING)));
             }
-            if next.is_empty() && way != 0 {
-                others(&mut next);
+            if begins || next.is_empty() {
+                let others = self.axes.surplus_next(solver, target, &state.joints);
+                next.extend(others.into_iter().map(|joints| (joints, way)));
             }
             for (mut joints, branch) in next.drain(..) {
                 if self.axes.stand_still(&state.joints, &mut joints)

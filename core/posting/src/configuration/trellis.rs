@@ -402,11 +402,8 @@ impl Trellis {
     /// add a turn to either side each time, until there are [`MOST_STATES`] at every point.
     pub(super) fn keep(&mut self, first: usize, state: TrellisState) {
         let axes = &self.axes;
-        // Ways that are the same down to here, as on a plunge, part from here on.
-        let apart = if self.measure.has_surplus() { ALONG | HEADING } else { 0 };
         let like = |known: &&mut TrellisState| {
-            (known.branch ^ state.branch) & apart == 0
-                && axes.alike((known.branch, &known.joints), (state.branch, &state.joints))
+            axes.alike((known.branch, &known.joints), (state.branch, &state.joints))
         };
         match self.states[first..].iter_mut().find(like) {
             Some(known) if state.cost.less(&known.cost) => *known = state,

@@ -446,6 +446,28 @@ fn a_rail_goes_along_in_straight_moves() {
     }
 }
 
+/// A robot on a rail before a positioner of two axes: nine, of which the program leads each, and which are read back.
+#[test]
+fn a_robot_a_rail_and_a_positioner_are_nine_axes() {
+    let folder = folder(&ARMS[0], "rapid");
+    let cell = "extends = \"kr6-r700\"\nname = \"cell\"\nchain = \"[w E2' E1' b E3 A B C U V W (S) t]\"\n[workpiece]\nmount = [600, 0, 300]\n[axis.E1]\nrotary = [0, 1, 0]\npoint = [600, 0, 250]\ntravel = [-90, 90]\nmax_feed = 3600\n[axis.E2]\nrotary = [0, 0, 1]\npoint = [600, 0, 250]\ntravel = [-360, 360]\nmax_feed = 7200\n[axis.E3]\nlinear = [0, 1, 0]\ntravel = [-1000, 1000]\nmax_feed = 60000\n[control]\ndialect = \"rapid\"\n";
+    let path = folder.path();
+    fs::write(path.join("cell.toml"), cell).unwrap();
+    let with = ["-q", "-m", "cell.toml", "--plugins", ".", "--tool-length", "60"];
+    let posted = post(path, &[&["part.cls", "-o", "part.mod"][..], &with].concat());
+    assert_eq!(posted.code, 0, "{}", posted.err);
+    let program = fs::read_to_string(path.join("part.mod")).unwrap();
+    let beside = |line: &str| line.split("],[").nth(1).map(|list| list.matches("9E9").count());
+    let cuts: Vec<&str> = program.lines().filter(|line| line.contains("\\T:=")).collect();
+    assert!(!cuts.is_empty() && cuts.iter().all(|line| beside(line) == Some(3)), "{program}");
+    // Read back the nine keep the tip on its way; tolerance of the file 0.05 mm.
+    let against = ["verify", "part.mod", "--against", "part.cls", "--summary", "-"];
+    let read = post(path, &[&against[..], &with].concat());
+    let told: serde_json::Value = serde_json::from_str(&read.out).unwrap();
+    let tip = told["tip"]["value"].as_f64().unwrap();
+    assert!(tip > 0.0 && tip <= 0.05, "{tip}: {}", read.err);
+}
+
 /// How straight moves tell where the tool points is asked for by name, and means them.
 #[test]
 fn the_form_of_an_orientation_is_asked_for_by_name() {

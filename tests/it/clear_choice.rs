@@ -181,9 +181,9 @@ fn another_solution_that_hits_elsewhere_is_told_so() {
     assert_contains(
         &said,
         &[
-            "plate does not stay clear of",
-            "with another solution it does (",
             "does not stay clear of",
+            "with another solution it does (C",
+            " A -20.000",
             "in line ",
         ],
     );

@@ -275,22 +275,27 @@ impl<'a> Route<'a> {
         Some(Hit { line: last.line, contact, layer: count - 1 })
     }
 
-    /// The cheapest way to the last point that comes by a state of a layer; none where none does.
-    fn through(&self, layer: usize, state: usize) -> Option<Backtrace> {
+    /// The way by a state of a layer that is followed farthest: up to where a cheaper one comes to the same place, or nothing
+    /// goes on.
+    fn through(&self, layer: usize, state: usize) -> Backtrace {
         let trellis = &self.trellis;
-        let last = trellis.layers.last()?;
-        let mut ends: Vec<usize> = (last.first..last.first + last.count).collect();
-        ends.retain(|end| trellis.states[*end].cost.is_way());
-        ends.sort_by(|one, other| trellis.states[*one].cost.order(&trellis.states[*other].cost));
-        let ways = ends.into_iter().map(|end| {
-            let mut states = vec![end; trellis.layers.len()];
-            for layer in (1..states.len()).rev() {
-                states[layer - 1] = trellis.states[states[layer]].from;
+        let (mut ends, mut last) = (vec![state], layer);
+        for (place, at) in trellis.layers.iter().enumerate().skip(layer + 1) {
+            let mut behind: Vec<usize> = (at.first..at.first + at.count).collect();
+            behind.retain(|place| {
+                let state = &trellis.states[*place];
+                state.cost.is_way() && ends.contains(&state.from)
+            });
+            if behind.is_empty() {
+                break;
             }
-            Backtrace { states, eased: Vec::new() }
-        });
-        let mut ways = ways.filter(|way| way.states[layer] == state);
-        ways.next()
+            (ends, last) = (behind, place);
+        }
+        let mut states = vec![ends[0]; last + 1];
+        for layer in (1..states.len()).rev() {
+            states[layer - 1] = trellis.states[states[layer]].from;
+        }
+        Backtrace { states, eased: Vec::new() }
     }
 
     /// Why no other solution is taken where `way` has a hit.
@@ -326,13 +331,13 @@ impl<'a> Route<'a> {
             let Some(state) = goes else {
                 return NoOther::Through(stand.joints);
             };
-            let Some(other) = self.through(hit.layer, state) else {
-                return NoOther::Through(stand.joints);
-            };
-            if let Some(Hit { line, contact, layer }) = self.hit_of(&other, true)
-                && layer != hit.layer
-            {
-                return NoOther::Hits(stand.joints, line, contact.bodies);
+            let other = self.through(hit.layer, state);
+            match self.hit_of(&other, true) {
+                Some(Hit { line, contact, layer }) if layer != hit.layer => {
+                    return NoOther::Hits(stand.joints, line, contact.bodies);
+                }
+                Some(_) => {}
+                None => return NoOther::Through(stand.joints),
             }
         }
         beyond.map_or(NoOther::Clear, NoOther::Travel)

@@ -307,3 +307,79 @@ fn a_fanuc_of_lathes_has_the_words_of_its_system() {
         wrong("Z-20.000", "W-20.000", "W is no axis");
     }
 }
+
+/// Where the imaginary tip lies from the centre of the nose, X and Z in radii, by the quadrant from 1: Haas' operator's manual.
+const QUADRANTS: [[f64; 2]; 9] = [
+    [1.0, 1.0],
+    [1.0, -1.0],
+    [-1.0, -1.0],
+    [-1.0, 1.0],
+    [0.0, 1.0],
+    [1.0, 0.0],
+    [0.0, -1.0],
+    [-1.0, 0.0],
+    [0.0, 0.0],
+];
+
+#[test]
+fn points_of_the_centre_of_a_nose_are_written_as_those_of_its_tip_and_the_other_way_round() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = [[15.0, 0.0], [15.0, -20.0], [22.0, -31.0]];
+    let cl = turned(&path, Speed::Fixed(900.0), 0.25);
+    let words = |program: &str| -> Vec<Place> {
+        let mut at = [f64::NAN; 2];
+        let mut places = Vec::new();
+        for line in program.lines().filter(|line| !line.contains("G53")) {
+            let number = |name: char| {
+                line.split_whitespace()
+                    .find_map(|word| word.strip_prefix(name)?.parse::<f64>().ok())
+            };
+            if let (None, None) = (number('X'), number('Z')) {
+                continue;
+            }
+            at = [number('X').map_or(at[0], |x| x / 2.0), number('Z').unwrap_or(at[1])];
+            if at[0].is_finite() && at[1].is_finite() {
+                places.push(at);
+            }
+        }
+        places
+    };
+    let plain = words(&run(folder.path(), &cl, &[]).out);
+    for (points, sign) in [("centre", 1.0), ("tip", -1.0)] {
+        for (place, [x, z]) in QUADRANTS.into_iter().enumerate() {
+            let said = [
+                format!("cl.points=\"{points}\""),
+                "tools.1.nose=0.8".to_owned(),
+                format!("tools.1.quadrant={}", place + 1),
+            ];
+            let said: Vec<&str> = said.iter().map(String::as_str).collect();
+            let made = run(folder.path(), &cl, &said);
+            assert_eq!(made.code, 0, "{said:?}: {}", made.err);
+            let shifted = words(&made.out);
+            assert_eq!(plain.len(), shifted.len(), "{}", made.out);
+            for (plain, shifted) in plain.iter().zip(&shifted) {
+                let wanted = [plain[0] + 0.8 * sign * x, plain[1] + 0.8 * sign * z];
+                let off = [0, 1].map(|part| (shifted[part] - wanted[part]).abs());
+                assert!(off[0] < 5.1e-4 && off[1] < 5.1e-4, "{shifted:?} {wanted:?}\n{}", made.out);
+            }
+            // Another radius is another path.
+            if place < 8 {
+                let nc = folder.path().join("part.nc");
+                let told = verified(folder.path(), &nc, &[said[0], "tools.1.nose=0.4", said[2]]);
+                assert_eq!(told.code, 1, "{said:?}: {}", told.err);
+                assert!(told.err.contains("off the CL path"), "{}", told.err);
+            }
+        }
+    }
+    let refused = |set: &[&str], says: &str| {
+        let made = run(folder.path(), &cl, set);
+        assert_eq!((made.code, made.out.as_str()), (1, ""), "{set:?}\n{}", made.err);
+        assert!(made.err.contains(says), "{says}\n{}", made.err);
+    };
+    refused(&["cl.points=\"centre\""], "nothing is said of its nose");
+    refused(&["cl.points=\"centre\"", "tools.1.nose=0.8"], "a number from 1 to 9");
+    refused(&["cl.points=\"centre\"", "tools.1.nose=0.8", "tools.1.quadrant=10"], "from 1 to 9");
+    refused(&["tools.1.nose=0.8", "tools.1.quadrant=3"], "[cl] points");
+    let still = ["cl.points=\"centre\"", "spindle.surface_speed=false"];
+    refused(&still, "whose spindle turns the part");
+}

@@ -348,6 +348,7 @@ impl Builder<'_> {
         let tool_table = self.tool_table(&file.tools.keys);
         let options = self.control_options(file, &axes, &mut control_options);
         let own = self.axis_free_rules(file, &mut model_options);
+        let nose = self.nose(&file.cl, &file.tools, &axes, &own.spindle);
         let solids = self.solids(&file.solids, &axes);
         let fixtures = self.fixtures(&file.fixture, &axes);
         let stocks = self.stocks(file.stock.as_ref(), &axes);
@@ -384,6 +385,7 @@ impl Builder<'_> {
             control_point: own.control_point,
             tools,
             tool_table,
+            nose,
             spindle: own.spindle,
             word_rules: own.word_rules,
             smoothing: own.smoothing,

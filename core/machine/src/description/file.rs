@@ -207,6 +207,10 @@ keys! {
         /// braces n is the first number behind the slash, n2 the second; `{n:.3}` has decimals. `"SET/OFSETL"` is for one
         /// form of a word alone.
         words: BTreeMap<Spanned<String>, Spanned<OneOrMoreLines>>,
+        /// The point of a turning tool's nose that the points of the CL file are, where its offsets in the control name the
+        /// other one; both name the same if not said. `nose` and `quadrant` of `[tools.N]` describe each tool; for a machine
+        /// of linear axes whose spindle turns the part.
+        points: Option<Spanned<NosePoint>>,
         /// `AUXFUN/n` becomes the line M n, `PREFUN/n` the line G n, unless `words` has other lines for them.
         functions: bool = Bounds::OFF,
     }
@@ -465,6 +469,16 @@ words! {
         Assembly "assembly",
         /// After those, the length in `TLDATA` or `CUTTER` too.
         Cl "cl",
+    }
+}
+
+words! {
+    /// A point of a turning tool's nose.
+    NosePoint {
+        /// Its centre; the offsets in the control name its imaginary tip.
+        Centre "centre",
+        /// Its imaginary tip; the offsets in the control name its centre.
+        Tip "tip",
     }
 }
 

@@ -23,6 +23,7 @@ mod length;
 mod limits;
 mod mode;
 mod motion;
+mod nose;
 mod numbers;
 mod options;
 mod outline;
@@ -69,6 +70,7 @@ pub use layers::{Source, readable};
 pub use length::LengthAxis;
 pub use limits::MOST_BYTES;
 pub use motion::{BlendRule, CornerRule, LimitsActOn, MotionRules, RapidRule};
+pub use nose::NoseRule;
 pub use outline::ToolOutline;
 pub use plan::{PlanRules, PlanSolver};
 pub use profile::{NumberOrigin, Profile, StatedNumber, stated_numbers};
@@ -153,6 +155,8 @@ pub struct Machine {
     pub tools: Vec<(u32, f64)>,
     /// The file that has its tools, if the machine file or the job names one.
     pub tool_table: Option<ToolTable>,
+    /// What leads from the points of the CL file to those that its tools' offsets in the control name, if they are others.
+    pub nose: Option<NoseRule>,
     /// The control.
     pub control: ControlRules,
     /// How fast its spindle turns.

@@ -13,6 +13,8 @@ use crate::diagnostic::Short;
 
 const EDGE: Bounds = Bounds { says: " mm", ..Bounds::above_zero("machine-body") };
 
+const NOSE: Bounds = Bounds { says: " mm", ..Bounds::from_zero("machine-tools") };
+
 keys! {
     /// A tool: its length, and how far it reaches from its axis.
     ToolOutlineFile {
@@ -27,6 +29,11 @@ keys! {
         /// How far its edges go up from the tip, mm; what of the cutter is above them is a shank, and may touch no stock. All
         /// of the cutter cuts if not said.
         edge: Option<KeyedNumber> = EDGE,
+        /// Radius of a turning tool's nose, mm, for `[cl] points`.
+        nose: Option<KeyedNumber> = NOSE,
+        /// Where its imaginary tip lies from the centre of its nose, as Fanuc, Haas and Siemens number it: 1 X+ Z+, 2 X+ Z-
+        /// (turned inside), 3 X- Z- (turned outside, towards the chuck), 4 X- Z+, 5 Z+, 6 X+, 7 Z-, 8 X- (grooved), 9 in it.
+        quadrant: Option<Spanned<u32>> = Bounds::within(1.0, 9.0, "", ""),
     }
 
     /// How a profile comes to a point.

@@ -18,6 +18,8 @@ pub(crate) struct ClFrame {
     turned: Option<Matrix3<f64>>,
     /// How the part is turned about its Z where it sits; none if it is not.
     clamped: Option<Matrix3<f64>>,
+    /// What leads to the point of the tool that the control counts by, mm, part frame.
+    shift: Option<Vector3<f64>>,
 }
 
 /// Angles with six decimals of a radian do not quite reach a right angle: so far they are taken as one.
@@ -28,6 +30,11 @@ impl ClFrame {
     pub(crate) fn new(apply_msys: bool, turn: f64) -> Self {
         let rotation = || Rotation3::from_axis_angle(&Vector3::z_axis(), turn).into_inner();
         Self { apply_msys, clamped: (turn != 0.0).then(rotation), ..Self::default() }
+    }
+
+    /// Points are taken on by `shift`, mm, part frame.
+    pub(crate) fn take_on(&mut self, shift: Vector3<f64>) {
+        self.shift = Some(shift).filter(|shift| *shift != Vector3::zeros());
     }
 
     /// The part sits turned about its Z.
@@ -95,7 +102,10 @@ impl ClFrame {
     /// Points are written in the frame of the part.
     #[inline]
     pub(crate) fn is_of_part(&self) -> bool {
-        self.turned.is_none() && self.clamped.is_none() && (self.msys.is_none() || !self.apply_msys)
+        self.turned.is_none()
+            && self.clamped.is_none()
+            && self.shift.is_none()
+            && (self.msys.is_none() || !self.apply_msys)
     }
 
     /// A direction, taken to the frame of the part.
@@ -123,6 +133,9 @@ impl ClFrame {
         if let Some(clamped) = &self.clamped {
             tip = clamped * tip;
             axis = clamped * axis;
+        }
+        if let Some(shift) = &self.shift {
+            tip += shift;
         }
         (tip, axis)
     }

@@ -52,6 +52,15 @@ impl ClInterpreter {
             );
         }
         self.load_told(record, emit);
+        if self.tools.loaded.is_none() && self.reading.nose.take().is_some() {
+            self.fault(
+                record,
+                "tool",
+                "the file loads no tool, and which point of its nose the control counts by follows from the tool ([cl] points)"
+                    .to_owned(),
+                "--tool names it",
+            );
+        }
         self.refuse_what_is_left(record);
         if std::mem::take(&mut self.tools.cutter_changed) {
             self.refuse_cutter(record);

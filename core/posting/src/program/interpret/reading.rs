@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use post_grammar::{MajorWord, Units};
 use post_machine::description::{
-    CompensationOnCentre, Insert, Machine, Print, SmoothingRules, ToolLength, WordRule,
+    CompensationOnCentre, Insert, Machine, NoseRule, Print, SmoothingRules, ToolLength, WordRule,
 };
 
 use post_machine::diagnostic::{FurtherFile, SourceFiles};
@@ -56,6 +56,8 @@ pub struct ReadingOptions {
     pub print: Print,
     /// The spindle turns the part: `SFM` and `SMM` are constant cutting speeds.
     pub surface_speed: bool,
+    /// What leads to the points that the control counts by, where the file has others.
+    pub nose: Option<NoseRule>,
     /// The feed is planned, which is one a minute.
     pub plans: bool,
     /// Tolerances by which the control may leave the path, by operation.
@@ -103,6 +105,7 @@ impl ReadingOptions {
         self.knife = machine.edge.is_some();
         self.print = machine.control.print;
         self.surface_speed = machine.spindle.surface_speed;
+        self.nose.clone_from(&machine.nose);
         self.smoothing.clone_from(&machine.smoothing);
         self
     }

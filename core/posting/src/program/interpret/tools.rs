@@ -11,7 +11,7 @@ use super::cam_system::CompensatedPoints;
 use super::{ClInterpreter, CutterDescription, SHOWN_NAME, StepSink};
 use crate::program::limits::{MOST_COORDINATE, MOST_TOOLS};
 use crate::program::{Command, ProgramStep, ToolChange};
-use post_machine::description::{CompensationOnCentre, ToolLength};
+use post_machine::description::{CompensationOnCentre, NoseRule, ToolLength};
 use post_machine::diagnostic::{Diagnostic, Short};
 
 impl ClInterpreter {
@@ -171,6 +171,7 @@ impl ClInterpreter {
             return;
         }
         self.tools.loaded = loaded;
+        self.take_nose(record, tool.number);
         if self.cycles.in_force.is_some() {
             self.warn(
                 record,
@@ -214,6 +215,20 @@ impl ClInterpreter {
             corner_radius: cutter[1],
             name: self.tools.name.clone(),
         })));
+    }
+
+    /// The points of the tool that is loaded are others of its nose than the control counts by, if the machine file has it so.
+    fn take_nose(&mut self, record: &Record<'_>, number: u32) {
+        let Some(rule) = &self.reading.nose else {
+            return;
+        };
+        match rule.shift(number) {
+            Some(shift) => self.frame.take_on(shift),
+            None => {
+                let [message, help] = NoseRule::lack(number);
+                self.fault(record, "tool", message, &help);
+            }
+        }
     }
 
     /// Loads the tool that the user names or that belongs to the cutter, before the first record that needs one.

@@ -20,12 +20,20 @@ pub(super) struct Frames {
     msys: Option<(Vector3<f64>, Matrix3<f64>)>,
     /// How the part sits.
     sits: Option<Matrix3<f64>>,
+    /// From the point of the tool that the file names to that which the control counts by, mm, part frame.
+    nose: Vector3<f64>,
 }
 
 impl Frames {
     pub(super) fn new(turn: f64) -> Self {
         let about_z = || *Rotation3::from_axis_angle(&Vector3::z_axis(), turn).matrix();
-        Self { index: [0.0; 3], turned: None, msys: None, sits: (turn != 0.0).then(about_z) }
+        Self {
+            index: [0.0; 3],
+            turned: None,
+            msys: None,
+            sits: (turn != 0.0).then(about_z),
+            nose: Vector3::zeros(),
+        }
     }
 
     /// The part sits turned about its Z.
@@ -99,9 +107,15 @@ impl Frames {
         Ok(())
     }
 
+    /// The points of the file are those of another point of the tool, which the control counts by that far off.
+    pub(super) fn count_by(&mut self, nose: Vector3<f64>) {
+        self.nose = nose;
+    }
+
     /// The frame of the file is that of the part.
     pub(super) fn is_of_part(&self) -> bool {
-        self.turned.is_none() && self.msys.is_none() && self.sits.is_none()
+        let turned = [self.turned.as_ref(), self.sits.as_ref()].iter().any(Option::is_some);
+        !turned && self.msys.is_none() && self.nose == Vector3::zeros()
     }
 
     /// A point of the file, mm, in the part frame.
@@ -112,10 +126,11 @@ impl Frames {
         if let Some((origin, into)) = &self.msys {
             point = into * (point - origin);
         }
-        match &self.sits {
+        let point = match &self.sits {
             Some(sits) => sits * point,
             None => point,
-        }
+        };
+        point + self.nose
     }
 
     /// A direction of the file in the part frame.

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use post_grammar::{MajorWord, Units};
-use post_machine::description::{EdgeSource, Insert, Machine, Print, ToolLength, WordRule};
+use post_machine::description::{
+    EdgeSource, Insert, Machine, NoseRule, Print, ToolLength, WordRule,
+};
 use post_machine::diagnostic::{FurtherFile, SourceFiles};
 use post_machine::wait_rule::WaitRule;
 
@@ -44,6 +46,8 @@ pub struct ClSettings {
     pub insert: Insert,
     /// Cutting speeds are kept by the control (the spindle turns the part): `spindle.surface_speed`.
     pub surface_speed: bool,
+    /// What leads to the points that the control counts by: `cl.points`.
+    pub nose: Option<NoseRule>,
     /// Where the leading edge of a knife points; none for a tool that turns.
     pub edge: Option<EdgeSource>,
     /// Heads that have a work offset of their own, and its number: `head.NAME.offset`.
@@ -62,6 +66,7 @@ impl ClSettings {
             print: machine.control.print,
             insert: machine.control.insert,
             surface_speed: machine.spindle.surface_speed,
+            nose: machine.nose.clone(),
             edge: machine.edge.map(|_| machine.solution.edge),
             head_offsets: (machine.heads.iter())
                 .filter_map(|head| Some((head.name.clone(), head.offset?)))

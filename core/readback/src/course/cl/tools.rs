@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use post_grammar::{LoadTool, Record, Sense, SpindleUnit, SpindleWord};
-use post_machine::description::ToolLength;
+use post_machine::description::{NoseRule, ToolLength};
 
 use super::modal::{ClModal, CourseItems, RecordResult};
 use crate::{ProgramEvent, SpindleState};
@@ -208,6 +208,12 @@ impl ClModal {
         let length = tool.length.map(|length| length * self.scale);
         self.measured |= tool.length.is_some();
         self.tools.loaded = loaded;
+        if let Some(rule) = &self.settings.nose {
+            match rule.shift(tool.number) {
+                Some(shift) => self.frames.count_by(shift),
+                None => return Err(self.fault(record, NoseRule::lack(tool.number)[0].clone())),
+            }
+        }
         self.tools.said = false;
         if std::mem::take(&mut self.compensated) {
             let (side, register) = (0, None);

@@ -1,6 +1,6 @@
 //! The engine as a program begins: what table and options say.
 
-use post_plugin::{Axes, Block, Modal, NumberStyle, Setup, Standstill, Units, Value};
+use post_plugin::{Axes, Block, Modal, NumberStyle, OptionSpec, Setup, Standstill, Units, Value};
 
 use super::Engine;
 use super::spindle::COOLANTS;
@@ -69,7 +69,7 @@ impl Engine {
             inch,
             tcp: setup.tcp,
             work_offset,
-            cancel: text(setup, "cancel", table.cancel),
+            cancel: cancel(table, setup),
             cancel_due: false,
             retract: text(setup, "retract", ""),
             tcp_on,
@@ -93,6 +93,16 @@ impl Engine {
             flowing: None,
             standstill: Standstill::default(),
         })
+    }
+}
+
+/// What cancels shifts and turns: the option, whose default stands for what the table says.
+fn cancel(table: &Table, setup: &Setup<'_>) -> String {
+    let said = text(setup, "cancel", table.cancel);
+    let is_default = |spec: &OptionSpec| spec.key == "cancel" && spec.default == Value::Text(&said);
+    match table.options.iter().any(is_default) {
+        true => table.cancel.to_owned(),
+        false => said,
     }
 }
 

@@ -180,12 +180,7 @@ fn another_solution_that_hits_elsewhere_is_told_so() {
     assert!(hits.is_some());
     assert_contains(
         &said,
-        &[
-            "does not stay clear of",
-            "with another solution it does (C",
-            " A -20.000",
-            "in line ",
-        ],
+        &["does not stay clear of", "with another solution it does (C", " A -20.000", "in line "],
     );
     assert!(!said.contains("no solution was found"), "{said}");
 }

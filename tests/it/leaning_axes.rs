@@ -29,8 +29,8 @@ const WORDS: [&str; 6] = ["part.nc", "-m", "mine.toml", "--mount", "0,0,-300", "
 
 /// How far the tip comes in Y with X along (1, lean): the largest of lean·x + y on the circle.
 fn reach(lean: f64) -> f64 {
-    let length = 1.0f64.hypot(lean);
-    20.0 * (lean / length).hypot(1.0)
+    let length = libm::hypot(1.0, lean);
+    20.0 * libm::hypot(lean / length, 1.0)
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn other_posts_arcs_are_read_and_held_against_the_cl_file() {
     let radii = points.map(|point| {
         let [x, y] =
             [0, 1].map(|place| point.split(',').nth(place).unwrap().parse::<f64>().unwrap());
-        (x * 1.0f64.hypot(0.001)).hypot(y - 0.001 * x)
+        libm::hypot(x * libm::hypot(1.0, 0.001), y - 0.001 * x)
     });
     let radii: Vec<f64> = radii.collect();
     assert!(

@@ -374,8 +374,11 @@ fn a_tool_axis_that_strays_between_poses_is_found() {
         let sparse: String = sparse.map(|line| format!("{line}\n")).collect();
         fs::write(path.join("sparse.txt"), sparse).unwrap();
         // From the frame where the cut begins, which the joints before it tell.
-        let at =
-            program[..program.find(begins).unwrap()].lines().filter_map(joints).last().unwrap();
+        let at = program[..program.find(begins).unwrap()]
+            .lines()
+            .filter_map(joints)
+            .next_back()
+            .unwrap();
         let from = *flange(at).matrix();
         let (_, to) = *poses(&program).last().unwrap();
         let whole = Rotation3::from_matrix_unchecked(to * from.transpose());
@@ -425,7 +428,7 @@ fn a_rail_goes_along_in_straight_moves() {
         assert!(spread[1] - spread[0] > 1000.0, "{dialect}: {spread:?}");
         // 4.8 m are led along, and the arm reaches 2.05 m and its spindle.
         for ((tip, _), rail) in poses(&program).into_iter().zip(&rails) {
-            assert!((tip.y - rail).hypot(tip.x) < 2300.0, "{dialect}: {tip:?} from {rail}");
+            assert!(libm::hypot(tip.y - rail, tip.x) < 2300.0, "{dialect}: {tip:?} from {rail}");
         }
         let verify = |name: &str| {
             let against = [&["verify", name, "--against", "part.cls"][..], &with].concat();

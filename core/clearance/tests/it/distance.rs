@@ -48,7 +48,7 @@ fn off_cylinder(
 ) -> f64 {
     let arm = point - from;
     let z = axis.dot(&arm);
-    ((arm - axis * z).norm() - radius).max(0.0).hypot((-z).max(z - long).max(0.0))
+    libm::hypot(((arm - axis * z).norm() - radius).max(0.0), (-z).max(z - long).max(0.0))
 }
 
 /// The place that is told of two bodies is on both where they overlap, and else on each, as far apart as they are.

@@ -243,10 +243,11 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             }
             Known::Nothing => return,
         };
-        // Where the control keeps the tip it may do so at rapid as well: the axes go another way then.
-        let together = Way { independent: false, ..way };
-        let twice = way.independent && motion.turns() && motion.way != Interpolation::Axes;
-        let ways = &[way, together][..1 + usize::from(twice)];
+        // Where the control keeps the tip it may do so at rapid as well, or not: the axes go another way then.
+        let interpolation = if way.independent { way.interpolation } else { &Interpolation::Axes };
+        let other = Way { independent: false, interpolation, ..way };
+        let twice = at_rapid && motion.turns() && *way.interpolation != Interpolation::Axes;
+        let ways = &[way, other][..1 + usize::from(twice)];
         let line = motion.line;
         let mut nearest = None;
         let mut stands = false;

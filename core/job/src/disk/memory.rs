@@ -307,7 +307,7 @@ impl Metadata {
     }
 
     /// Length, bytes.
-    #[expect(clippy::len_without_is_empty, reason = "as std has it")]
+    #[allow(clippy::len_without_is_empty, reason = "as std has it")]
     pub fn len(&self) -> u64 {
         self.length.unwrap_or(0)
     }

@@ -10,11 +10,11 @@ const WITHIN: f64 = 0.002 + 1e-9;
 fn span(line: &[[f64; 2]], centre: [f64; 2]) -> [f64; 2] {
     let [from, to] = [line[0], line[1]].map(|[z, r]| [z - centre[0], r - centre[1]]);
     let way = [to[0] - from[0], to[1] - from[1]];
-    let length = way[0].hypot(way[1]).max(1e-12);
+    let length = libm::hypot(way[0], way[1]).max(1e-12);
     let share = -(from[0] * way[0] + from[1] * way[1]) / (length * length);
     let share = share.clamp(0.0, 1.0);
-    let nearest = (from[0] + way[0] * share).hypot(from[1] + way[1] * share);
-    [nearest, from[0].hypot(from[1]).max(to[0].hypot(to[1]))]
+    let nearest = libm::hypot(from[0] + way[0] * share, from[1] + way[1] * share);
+    [nearest, libm::hypot(from[0], from[1]).max(libm::hypot(to[0], to[1]))]
 }
 
 /// Volume of a profile, mm³: frusta.
@@ -43,7 +43,7 @@ fn a_ball_lies_between_its_outlines() {
                 false => assert!(far < size + 1e-9 && near > size - WITHIN, "{size} {line:?}"),
             }
         }
-        let truth = 2.0 / 3.0 * std::f64::consts::PI * size.powi(3);
+        let truth = 2.0 / 3.0 * std::f64::consts::PI * size * size * size;
         let (inner, outer) = (volume(&ball.inner), volume(&ball.outer));
         assert!(inner < truth && truth < outer, "{size} {inner} {truth} {outer}");
         assert!(outer - inner < 4.0 * 0.002 * std::f64::consts::PI * size * size, "{size}");
@@ -65,7 +65,7 @@ fn a_hollow_lies_between_its_outlines() {
         assert!(near > 3.0 - 1e-9 && far < 3.0 + WITHIN, "{line:?}");
     }
     // By Pappus: the square less the quarter of a circle, turned about the axis.
-    let square = std::f64::consts::PI * (8.0f64.powi(2) - 5.0f64.powi(2)) * 3.0;
+    let square = std::f64::consts::PI * (64.0 - 25.0) * 3.0;
     let quarter = std::f64::consts::PI * 9.0 / 4.0;
     let middle = 8.0 - 4.0 * 3.0 / (3.0 * std::f64::consts::PI);
     let fillet = square - 2.0 * std::f64::consts::PI * middle * quarter;

@@ -77,6 +77,10 @@ impl StreamPoint for ChosenPoint {
 
 /// What is not decided yet.
 #[derive(Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "runs of points and what stands between them alternate, and a box would be allocated for each"
+)]
 enum WaitingItem {
     /// A number of points.
     Points(u64),

@@ -234,7 +234,7 @@ fn linearised(
     free: &[usize],
     pose: &Pose,
     joints: &Joints,
-) -> (SVector<f64, 9>, SMatrix<f64, 9, MAX_AXES>) {
+) -> (SVector<f64, 9>, SMatrix<f64, 9, COLUMNS>) {
     let mut frame = [Vector3::x(), Vector3::y(), Vector3::z()];
     let mut origin = -chain.mount();
     let out = |frame: &[Vector3<f64>; 3], v: Vector3<f64>| {
@@ -257,7 +257,7 @@ fn linearised(
     let (tip, axis) = (origin + out(&frame, chain.tip()), out(&frame, chain.axis()));
     let edge = chain.edge().map(|edge| out(&frame, edge));
     let mut residual = SVector::<f64, 9>::zeros();
-    let mut jacobian = SMatrix::<f64, 9, MAX_AXES>::zeros();
+    let mut jacobian = SMatrix::<f64, 9, COLUMNS>::zeros();
     residual.fixed_rows_mut::<3>(0).copy_from(&(tip - pose.tip));
     residual.fixed_rows_mut::<3>(3).copy_from(&((axis - pose.axis) * 300.0));
     if let Some(edge) = edge {
@@ -278,6 +278,9 @@ fn linearised(
     (residual, jacobian)
 }
 
+/// Columns of whole matrices: as many as the chains here have joints at most. Sums of more than eight are made in another order.
+const COLUMNS: usize = 8;
+
 /// Levenberg's steps in matrices of eight columns: where they end, and how many they were.
 fn plainly(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) -> (Joints, usize) {
     let mut joints = *start;
@@ -290,7 +293,7 @@ fn plainly(chain: &Chain, free: &[usize], pose: &Pose, start: &Joints) -> (Joint
         }
         let mut normal = jacobian.transpose() * jacobian;
         let scale = normal.diagonal().max();
-        for index in 0..MAX_AXES {
+        for index in 0..COLUMNS {
             normal[(index, index)] += match index < free.len() {
                 true => damping * normal[(index, index)].max(1e-9 * scale),
                 false => 1.0,

@@ -328,4 +328,5 @@ def test_what_is_posted_is_what_the_cl_file_has(tmp_path: Path) -> None:
         seen += bool(list(wrongs(found, spoilt(rng, text))))
     print(json.dumps({**tally, "refused because": dict(reasons), "spoilt": spoilings, "seen": seen}))
     assert tally["posted"] * 2 >= tally["refused"], reasons
-    assert seen >= 0.9 * spoilings
+    # Nine of ten, less what so many draws may lack of it by chance (three standard deviations).
+    assert seen >= 0.9 * spoilings - 3.0 * (0.09 * spoilings) ** 0.5

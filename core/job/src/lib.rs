@@ -19,6 +19,7 @@ pub mod disk;
 mod dry_run;
 pub mod failure;
 pub mod files;
+mod given_values;
 pub mod job_file;
 pub mod library;
 pub mod lint;

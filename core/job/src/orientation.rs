@@ -5,23 +5,13 @@ use post_machine::description::{ControlRules, Orientation};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{OptionKind, OptionSpec};
 
-use super::plugin_finder::given;
+use super::given_values::given;
 
 /// Options by which dialects write the direction of the tool in the place of the words of rotary axes.
 const VECTORS: [&str; 2] = ["tool_vector", "tool_vectors"];
 
 /// The option of a dialect that tells how the tool as a whole stands: it allows the forms that its language has.
 const WHOLE: &str = "orientation";
-
-/// All that a machine file may ask for.
-const ALL: [Orientation; 6] = [
-    Orientation::Axes,
-    Orientation::Vector,
-    Orientation::AbcZyx,
-    Orientation::Wpr,
-    Orientation::Quaternion,
-    Orientation::RotationVector,
-];
 
 /// The options of a machine's dialect, with what `orientation` asks for among them.
 ///
@@ -43,7 +33,7 @@ pub fn options(
         if asked == Orientation::Axes {
             return Ok(options);
         }
-        let has = ALL
+        let has = Orientation::ALL
             .iter()
             .filter(|one| **one == Orientation::Axes || told(plugin.options(), **one).is_some());
         let has: Vec<String> = has.map(|one| format!("\"{}\"", one.name())).collect();

@@ -4,17 +4,17 @@ use std::env::consts::DLL_SUFFIX;
 use std::path::{Path, PathBuf};
 
 use post_host::{
-    Finder, GivenValue, LinkedPlugin, OpenedDialect, OpenedModel, Plugin, PluginFault,
-    ProgramAhead, ProgramSetup, ProgramTool, ProgramWord, Reason,
+    Finder, LinkedPlugin, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramAhead,
+    ProgramSetup, ProgramTool, ProgramWord, Reason,
 };
 use post_machine::axis_words;
-use post_machine::description::{GivenOption, Machine, OptionValue, OutputUnits, Tcp};
+use post_machine::description::{GivenOption, Machine, OutputUnits, Tcp};
 use post_machine::diagnostic::{self, Diagnostic, SourcePlace, nearest};
 use post_plugin::{Accuracy, Tolerance, Units, Value};
 use post_posting::ProgramPreview;
 use post_posting::report::PluginUse;
 
-use super::{orientation, plugin_folders};
+use super::{given_values::given, orientation, plugin_folders};
 use crate::files::{PathArg, standard};
 use crate::session::Session;
 
@@ -231,21 +231,6 @@ pub fn plain_model(finder: &Finder, name: &str) -> Result<OpenedModel, Vec<Diagn
         .find(name)
         .and_then(|plugin| plugin.error_model(&[]))
         .map_err(|fault| vec![diagnostic(&fault, &[], None)])
-}
-
-pub(crate) fn given(options: &[GivenOption]) -> Vec<(String, GivenValue)> {
-    options
-        .iter()
-        .map(|option| {
-            let value = match &option.value {
-                OptionValue::Flag(flag) => GivenValue::Flag(*flag),
-                OptionValue::Integer(number) => GivenValue::Integer(*number),
-                OptionValue::Number(number) => GivenValue::Number(*number),
-                OptionValue::Text(text) => GivenValue::Text(text.clone()),
-            };
-            (option.key.clone(), value)
-        })
-        .collect()
 }
 
 /// Where the axis is described about which the dialect complains: its sentence begins with `axis C:`.

@@ -113,6 +113,12 @@ fn bodies(rng: &mut Rng, machine: &Random, size: f64, rules: Rules) -> Bodies {
 }
 
 impl Bodies {
+    /// Begins the proof anew, by other rules.
+    fn keep(&mut self, machine: &Random, rules: Rules) {
+        let all = self.proof.bodies().to_vec();
+        self.proof = Proof::new(&machine.reference.joints, all, rules, |_, _| true);
+    }
+
     /// The distance at a pose, by other means: no less than it is.
     fn apart(&self, machine: &Random, q: &Joints) -> f64 {
         let place = |link: usize| product(&machine.reference.joints, q, 0, link);
@@ -268,9 +274,7 @@ fn what_is_kept_anywhere_in_a_box_with_half_to_spare_is_proven() {
         if rapid <= 0.0 {
             continue;
         }
-        let all_bodies = bodies.proof.bodies().to_vec();
-        let rules = Rules { rapid, ..Rules::default() };
-        bodies.proof = Proof::new(&machine.reference.joints, all_bodies, rules, |_, _| true);
+        bodies.keep(&machine, Rules { rapid, ..Rules::default() });
         bodies.take(&solver, &Interpolation::Axes, [&ends[0], &ends[1]], true);
         all += 1;
         let result = bodies.proof.results().next().unwrap();
@@ -526,9 +530,7 @@ fn what_is_kept_with_a_hundredth_to_spare_is_proven() {
         if keep <= 0.0 {
             continue;
         }
-        let all_bodies = bodies.proof.bodies().to_vec();
-        let rules = Rules { keep, ..Rules::default() };
-        bodies.proof = Proof::new(&machine.reference.joints, all_bodies, rules, |_, _| true);
+        bodies.keep(&machine, Rules { keep, ..Rules::default() });
         bodies.take(&solver, &Interpolation::Axes, [&ends[0], &ends[1]], false);
         all += 1;
         proven += u32::from(bodies.proof.results().next().unwrap().faults == 0);

@@ -194,6 +194,9 @@ macro_rules! words {
             use $crate::description::table::*;
 
             impl $type {
+                /// All of them, in the order of the rows.
+                pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
                 /// The word that a machine file has for it.
                 pub fn name(self) -> &'static str {
                     match self {
@@ -210,7 +213,7 @@ macro_rules! words {
 
             impl KeyType for $type {
                 fn read(value: &Spanned<DeValue<'_>>, _: &'static Key) -> Result<Self, EntryError> {
-                    Ok([$(Self::$variant),*][word(value, &[$($word),*])?])
+                    Ok(Self::ALL[word(value, &[$($word),*])?])
                 }
 
                 $(fn absent() -> Option<Self> {

@@ -12,6 +12,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Solver};
 
 use super::free_way::{FreeWay, Room};
+use super::low_rapids::moves_nothing;
 use super::{BlockNote, BlockSink, BlockStage, MotionBlock};
 use crate::accuracy::{PathNode, Placer};
 use crate::configuration::{
@@ -226,21 +227,15 @@ impl<'a> AcrossChoice<'a> {
         if let Command::Tool(tool) = command {
             self.tool = Some(tool.clone());
         }
-        let passes = matches!(
-            command,
-            Command::Operation(_)
-                | Command::OperationEnd
-                | Command::Comment(_)
-                | Command::Message(_)
-                | Command::Coolant(_)
-                | Command::Spindle(_)
-                | Command::Preselect(_)
-                | Command::Compensate(_)
-                | Command::Smoothing(_)
-                | Command::Index { .. }
-                | Command::Leave
-                | Command::Retract { forgets: false }
-        );
+        let passes = moves_nothing(command)
+            || matches!(
+                command,
+                Command::Compensate(_)
+                    | Command::Smoothing(_)
+                    | Command::Index { .. }
+                    | Command::Leave
+                    | Command::Retract { forgets: false }
+            );
         if !passes && self.departed.take().is_some() && !matches!(command, Command::Tool(_)) {
             self.stays(Unlinked::Stops);
         }

@@ -84,7 +84,7 @@ impl WaitingRapids {
 }
 
 /// A record that moves nothing, and at which the tool may stand anywhere off the part.
-fn moves_nothing(command: &Command) -> bool {
+pub(super) fn moves_nothing(command: &Command) -> bool {
     matches!(
         command,
         Command::Operation(_)

@@ -201,9 +201,9 @@ class Machine:
         q[:, slides] = np.linalg.solve(np.stack(columns, axis=2), (tip - start)[:, :, None])[:, :, 0]
         return q
 
-    def work_zero(self) -> dict[str, float]:
-        """What the control shows of its slides where the gauge point is at the part's origin, rotary axes at zero."""
+    def work_zero(self, length: float = 0.0) -> dict[str, float]:
+        """What the control shows of its slides where the tip of a tool is at the part's origin, rotary axes at zero."""
         slides = self.slides()
         directions = np.stack([self.axes[slide].direction for slide in slides], axis=1)
-        values, *_ = np.linalg.lstsq(directions, self.mount - self.gauge, rcond=None)
+        values, *_ = np.linalg.lstsq(directions, self.mount - self.tip(length), rcond=None)
         return {self.axes[slide].name: float(self.axes[slide].shown(value)) for slide, value in zip(slides, values)}

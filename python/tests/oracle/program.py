@@ -69,6 +69,8 @@ def arc_points(arc: Arc, a: np.ndarray, b: np.ndarray, t: np.ndarray) -> np.ndar
 
 
 CODES = {*range(5), 8, 17, 18, 19, 21, 40, 43, 43.4, 49, 53, 54, 61, 64, 69, 80, 90, 91, 91.1, 92.2, 93, 94, 97, 98, 99}
+MEASURED = 1.8e-3
+"""A tool that leans from the slide along it by less than this (0.1 degrees) was measured so, mm of a mm of length."""
 CYCLES = {73, 81, 82, 83, 84, 85, 86, 89}
 
 
@@ -86,6 +88,17 @@ class Reader:
         self.cycle: dict[str, float] = {}
         self.initial, self.height = False, 0.0
         self.along = "XYZ"[int(np.argmax(np.abs(machine.tool_axis)))]
+        along = next(axis.direction for axis in machine.axes if axis.name == self.along)
+        self.leans = float(np.linalg.norm(along / (along @ machine.tool_axis) - machine.tool_axis))
+
+    def counted_from(self) -> dict[str, float]:
+        """What the control shows where the words are zero: its length put on along one slide. Where the tool leans from
+        that by as little as is measured, the work offset was measured with this tool, as the warning of ``post`` asks."""
+        if self.offset is None:
+            return self.zero
+        if self.leans < MEASURED:
+            return {**self.zero, **self.machine.work_zero(self.offset)}
+        return {**self.zero, self.along: self.zero[self.along] + self.offset}
 
     def joints(self, at: dict[str, float]) -> np.ndarray:
         """Axis values of what the control shows: one row."""
@@ -149,7 +162,7 @@ class Reader:
         self.cycle = {**self.cycle, **{key: axes[key] for key in "Z" if key in axes}}
         self.cycle |= {key: others[key] for key in "R" if key in others}
         if fresh:
-            self.height = self.shown["Z"] - self.zero["Z"] - (self.offset or 0.0)
+            self.height = self.shown["Z"] - self.counted_from()["Z"]
         over = {key: value for key, value in axes.items() if key != "Z"}
         out = max(self.height, self.cycle["R"]) if self.initial else self.cycle["R"]
         for axes, mode in ((over, 0), ({"Z": self.cycle["R"]}, 0), ({"Z": self.cycle["Z"]}, 1), ({"Z": out}, 0)):
@@ -161,7 +174,7 @@ class Reader:
         self, line: int, axes: dict[str, float], mode: int, others: dict[str, float], machine_words: bool
     ) -> Motion | None:
         """A motion to ``axes``, by G0 to G3; none where nothing moves."""
-        machine, start, to = self.machine, dict(self.shown), dict(self.shown)
+        machine, start, to, zero = self.machine, dict(self.shown), dict(self.shown), self.counted_from()
         keeps = self.tcp and not machine_words
         length = self.offset or self.lengths.get(self.tool or 0, 0.0)
         first = self.joints(start)
@@ -175,7 +188,7 @@ class Reader:
             elif not self.absolute:
                 to[letter] += value
             else:
-                to[letter] = value + self.zero[letter] + ((self.offset or 0.0) if letter == self.along else 0.0)
+                to[letter] = value + zero[letter]
         curved = mode in (2, 3) and not machine_words
         arc = Arc(self.plane, mode == 3, others) if curved else None
         if keeps:

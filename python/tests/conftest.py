@@ -1,6 +1,7 @@
 """What the tests share: the checkout's machines and CL files, and the command."""
 
 import os
+import signal
 import subprocess
 import time
 from collections.abc import Callable
@@ -8,6 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+# A shell that runs all this in the background has them ignored, and what is run here would inherit that.
+for ignored, handler in ((signal.SIGINT, signal.default_int_handler), (signal.SIGTERM, signal.SIG_DFL)):
+    if signal.getsignal(ignored) == signal.SIG_IGN:
+        signal.signal(ignored, handler)
 
 CHECKOUT = Path(__file__).parents[2]
 COMMAND = os.environ.get("POST_COMMAND", str(CHECKOUT / "target/debug/post"))

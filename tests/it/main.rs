@@ -32,6 +32,7 @@ mod drives;
 mod face;
 mod files;
 mod frame;
+mod fuzzed;
 mod guide;
 mod guides;
 mod hole_bounds;

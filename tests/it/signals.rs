@@ -1,6 +1,6 @@
 //! A command that is interrupted leaves nothing behind.
 
-use crate::common::{command, names};
+use crate::common::{command, command_as, names};
 
 use std::io::Write as _;
 use std::path::Path;
@@ -18,6 +18,17 @@ fn until(what: &str, mut done: impl FnMut() -> bool) {
         assert!(start.elapsed() < Duration::from_secs(20), "{what}");
         std::thread::sleep(Duration::from_millis(5));
     }
+}
+
+/// The command, which hears each signal even where whoever runs the tests has it ignored, as shells do of what they run in
+/// the background.
+fn hearing() -> Command {
+    if cfg!(not(target_os = "linux")) {
+        return command();
+    }
+    let mut hearing = command_as("env");
+    hearing.args(["--default-signal", env!("CARGO_BIN_EXE_post")]);
+    hearing
 }
 
 fn interrupted(
@@ -58,10 +69,10 @@ fn an_interrupted_command_leaves_no_temporary_file() {
     {
         let folder = tempfile::tempdir().unwrap();
         let to_file = &["-m", "vmc", "-", "-o", "part.nc", "--summary", "s.json"];
-        let found = interrupted(command(), folder.path(), to_file, 2, &[signal]);
+        let found = interrupted(hearing(), folder.path(), to_file, 2, &[signal]);
         assert_eq!((found, names(folder.path())), (Some(code), Vec::new()));
         let to_stream = &["-m", "vmc", "-", "-o", "-"];
-        let found = interrupted(command(), folder.path(), to_stream, 1, &[signal]);
+        let found = interrupted(hearing(), folder.path(), to_stream, 1, &[signal]);
         assert_eq!((found, names(folder.path())), (Some(code), Vec::new()));
     }
 }
@@ -84,7 +95,7 @@ fn a_command_that_shall_outlast_its_terminal_does() {
 fn what_a_killed_command_leaves_is_taken_away_by_the_next_one() {
     let folder = tempfile::tempdir().unwrap();
     let to_file = &["-m", "vmc", "-", "-o", "part.nc", "--summary", "s.json"];
-    let found = interrupted(command(), folder.path(), to_file, 2, &["-KILL"]);
+    let found = interrupted(hearing(), folder.path(), to_file, 2, &["-KILL"]);
     assert_eq!((found, names(folder.path()).len()), (None, 2));
     let kept = folder.path().join(".post-of-mine.old");
     std::fs::write(&kept, "mine").unwrap();

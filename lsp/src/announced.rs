@@ -23,7 +23,9 @@ pub fn capabilities() -> ServerCapabilities {
             .into(),
         ),
         completion_provider: Some(CompletionOptions {
-            trigger_characters: Some(["[", ".", "\"", "'", " ", "="].map(str::to_owned).to_vec()),
+            trigger_characters: Some(
+                ["[", ".", "\"", "'", " ", "=", "/", ","].map(str::to_owned).to_vec(),
+            ),
             ..CompletionOptions::default()
         }),
         hover_provider: Some(true.into()),

@@ -10,6 +10,7 @@ use gen_lsp_types::{
 use serde_json::{Map, Value, json};
 
 use super::document::{Document, FileKind, Snapshot};
+use super::fixes::Change;
 use super::machine::library::Library;
 use super::machine::parameters::{self, Member};
 use super::machine::{completion, fixes, hints, hover, lenses};
@@ -22,6 +23,7 @@ pub fn completion(document: &Document, at: Position, library: &Library) -> Vec<C
     let of = &document.now;
     match document.kind() {
         Some(FileKind::Machine) => completion::items(of, of.lines.byte(&of.text, at), library),
+        Some(FileKind::Cl) => cl::completion::items(of, of.lines.byte(&of.text, at)),
         _ => Vec::new(),
     }
 }
@@ -220,15 +222,18 @@ pub fn rename(
 /// What a click puts right in a part of the text.
 pub fn actions(document: &Document, part: LspRange, library: &Library) -> Vec<CodeActionResponse> {
     let of = &document.now;
-    if document.kind() != Some(FileKind::Machine) {
-        return Vec::new();
-    }
     let start = of.lines.byte(&of.text, part.start);
     let end = of.lines.byte(&of.text, part.end);
-    let fixes = fixes::fixes(of, &(start..end), library).into_iter();
+    let fixes = match document.kind() {
+        Some(FileKind::Machine) => fixes::fixes(of, &(start..end), library),
+        Some(FileKind::Cl) => cl::fixes::fixes(of, &(start..end)),
+        _ => Vec::new(),
+    };
     fixes
+        .into_iter()
         .map(|fix| {
-            let edit = TextEdit { range: of.lines.range(&of.text, fix.span), new_text: fix.text };
+            let Change { span, text } = fix.change;
+            let edit = TextEdit { range: of.lines.range(&of.text, span), new_text: text };
             let changes = [(of.uri.clone(), vec![edit])];
             CodeActionResponse::CodeAction(CodeAction {
                 title: fix.title,

@@ -10,6 +10,7 @@
 //! | `tiers` | what is found of a text at once, and later |
 //! | `document`, `positions`, `uri` | texts that are open, their edits, places in UTF-16 |
 //! | `findings` | findings of the core as the protocol has them |
+//! | `fixes`, `offers` | what a click puts right, what is offered while a text is written |
 //! | `background` | work that is slow, given up when its text is edited |
 //! | `commands` | `post check` of a file, asked for by a click |
 //! | `readings` | what the axes show |
@@ -28,8 +29,10 @@ mod commands;
 mod document;
 mod embedded;
 mod findings;
+mod fixes;
 mod machine;
 mod nc;
+mod offers;
 mod positions;
 mod readings;
 mod server;

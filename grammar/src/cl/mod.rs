@@ -4,6 +4,7 @@ pub(crate) mod foreign;
 mod goto_run;
 mod layout;
 pub(crate) mod line;
+mod minor_words;
 mod piece;
 mod reader;
 mod record;

@@ -527,6 +527,22 @@ fn each_word_has_one_row_and_each_statement_the_name_of_its_row() {
             assert_eq!((statement.word(), statement.usage()), (word.name(), word.usage));
         }
     }
+    // What an editor offers behind a word is read there, and has the effect of the word.
+    let mut offered = 0;
+    for word in words {
+        for record in word.records() {
+            let statement = read(record);
+            assert_eq!(
+                (statement.word(), statement.usage()),
+                (word.name(), word.usage),
+                "{record}"
+            );
+        }
+        offered += word.minor_words().len();
+    }
+    assert!(offered > 60, "{offered}");
+    let feeds = MajorWord::find("FEDRAT").unwrap().minor_words();
+    assert_eq!(feeds, ["MMPM", "IPM", "PERMIN", "MMPR", "IPR", "PERREV", "INVERS", "RAPID"]);
     assert!(MajorWord::find("NOSUCH").is_none());
     assert_eq!(read("nosuch/1").word(), "NOSUCH");
 }

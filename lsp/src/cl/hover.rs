@@ -11,7 +11,7 @@ use post_job::text::{at_most, number};
 const MOST_PARTS: usize = 50;
 
 /// The record that a line belongs to: its first line, counted from 0, and its text.
-fn record(of: &Snapshot, line: usize) -> (usize, &str) {
+pub(super) fn record(of: &Snapshot, line: usize) -> (usize, &str) {
     let text = |line: usize| &of.text[of.lines.span(&of.text, line)];
     let goes_on = |line: usize| {
         let text = text(line).trim_ascii_end();

@@ -1,6 +1,6 @@
 //! What is offered while a machine file is written.
 
-use gen_lsp_types::{CompletionItem, CompletionItemKind, Documentation, MarkupContent, MarkupKind};
+use gen_lsp_types::{CompletionItem, CompletionItemKind};
 use post_grammar::{FUNCTIONS, LinkKind, parse_chain};
 
 use super::cursor::Cursor;
@@ -9,6 +9,7 @@ use super::meaning::Meaning;
 use super::parameters;
 use super::tree::Tree;
 use crate::document::Snapshot;
+use crate::offers::item;
 use post_job::plugin_finder::built_in;
 
 /// What is offered at a byte of the text.
@@ -193,17 +194,5 @@ impl Offers<'_> {
             return axes.collect();
         }
         Vec::new()
-    }
-}
-
-fn item(label: &str, kind: CompletionItemKind, about: String) -> CompletionItem {
-    CompletionItem {
-        label: label.to_owned(),
-        kind: Some(kind),
-        documentation: Some(Documentation::MarkupContent(MarkupContent {
-            kind: MarkupKind::Markdown,
-            value: about,
-        })),
-        ..CompletionItem::default()
     }
 }

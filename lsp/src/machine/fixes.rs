@@ -1,4 +1,4 @@
-//! What a click puts right.
+//! What a click puts right in a machine file.
 
 use std::ops::Range;
 
@@ -7,63 +7,35 @@ use post_machine::diagnostic::Diagnostic;
 use super::library::Library;
 use super::tree::Tree;
 use crate::document::Snapshot;
-use crate::findings;
-
-/// A change of the text.
-pub struct Fix {
-    /// What it does.
-    pub title: String,
-    /// The finding that it puts right.
-    pub finding: Diagnostic,
-    /// The bytes that go.
-    pub span: Range<usize>,
-    /// What comes.
-    pub text: String,
-}
+use crate::fixes::{Change, Fix, meant, touching, written};
 
 /// The fixes for findings that touch a part of the text.
 pub fn fixes(of: &Snapshot, part: &Range<usize>, library: &Library) -> Vec<Fix> {
-    let found = super::findings(of, library);
     let tree = Tree::of(&of.text);
-    let mut fixes = Vec::new();
-    for finding in found {
-        let here = finding.place.as_ref().filter(|place| place.file == of.name);
-        let Some(span) = here.and_then(|place| findings::span(place, of)) else {
-            continue;
-        };
-        if span.end < part.start || part.end < span.start {
-            continue;
-        }
-        let fix = near_word(of, &finding, &span)
-            .or_else(|| turned_travel(of, &tree, &finding, &span))
-            .or_else(|| missing_axis(of, &tree, &finding, &span));
-        if let Some((title, span, text)) = fix {
-            fixes.push(Fix { title, finding, span, text });
-        }
-    }
-    fixes
+    touching(of, part, super::findings(of, library), |finding, span| {
+        near_word(of, finding, span)
+            .or_else(|| turned_travel(of, &tree, finding, span))
+            .or_else(|| missing_axis(of, &tree, finding, span))
+    })
 }
 
-type Change = (String, Range<usize>, String);
-
 /// A word that was likely meant.
-fn near_word(of: &Snapshot, finding: &Diagnostic, span: &Range<usize>) -> Option<Change> {
-    let help = finding.help.as_deref()?;
-    let (meant, _) = help.strip_prefix("did you mean `")?.split_once('`')?;
-    let written = &of.text[span.clone()];
-    let quote = written.chars().next().filter(|first| matches!(first, '"' | '\''));
+fn near_word(of: &Snapshot, finding: &Diagnostic, span: &Range<usize>) -> Option<(String, Change)> {
+    let meant = meant(finding)?;
+    let wrong_text = &of.text[span.clone()];
+    let quote = wrong_text.chars().next().filter(|first| matches!(first, '"' | '\''));
     let text = match quote {
         // In an expression the wrong name is a part of it.
         Some(_) if finding.code == "machine-expression" => {
             let wrong =
                 finding.message.split_once(": `").and_then(|(_, rest)| rest.split_once('`'))?.0;
-            let at = written.find(wrong)?;
-            format!("{}{meant}{}", &written[..at], &written[at + wrong.len()..])
+            let at = wrong_text.find(wrong)?;
+            format!("{}{meant}{}", &wrong_text[..at], &wrong_text[at + wrong.len()..])
         }
         Some(quote) => format!("{quote}{meant}{quote}"),
         None => meant.to_owned(),
     };
-    Some((format!("Write `{meant}`"), span.clone(), text))
+    Some(written(meant, span, text))
 }
 
 /// A travel whose ends stand the wrong way round.
@@ -72,7 +44,7 @@ fn turned_travel(
     tree: &Tree,
     finding: &Diagnostic,
     span: &Range<usize>,
-) -> Option<Change> {
+) -> Option<(String, Change)> {
     if finding.code != "machine-travel" {
         return None;
     }
@@ -90,7 +62,7 @@ fn turned_travel(
         return None;
     }
     let text = format!("[{}, {}]", &of.text[most.value.clone()], &of.text[least.value.clone()]);
-    Some((format!("Turn it round: {text}"), travel.value.clone(), text))
+    Some((format!("Turn it round: {text}"), Change { span: travel.value.clone(), text }))
 }
 
 /// An axis of the chain that is not described.
@@ -99,7 +71,7 @@ fn missing_axis(
     tree: &Tree,
     finding: &Diagnostic,
     span: &Range<usize>,
-) -> Option<Change> {
+) -> Option<(String, Change)> {
     let chain = &tree.get(&["chain"])?.value;
     if finding.code != "machine-axis" || span.start < chain.start || chain.end < span.end {
         return None;
@@ -135,7 +107,6 @@ fn missing_axis(
     });
     Some((
         format!("Describe {name} (fill in its numbers)"),
-        end..end,
-        format!("\n\n[axis.{name}]\n{}", axis.trim_end()),
+        Change { span: end..end, text: format!("\n\n[axis.{name}]\n{}", axis.trim_end()) },
     ))
 }

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use super::client::{Client, told, uri};
+use super::client::{Client, labels, told, uri};
 use crate::common::{assert_contains, root};
 
 const SHOWN: &str = "UNITS/MM
@@ -112,4 +112,45 @@ fn what_posting_refuses_is_told_where_it_stands() {
     );
     let found = client.findings_if(uri, 2, |found| !found.is_empty());
     assert_contains(&found[0]["message"].to_string(), &["no machine vmcc", "vmc"]);
+}
+
+#[test]
+fn words_are_offered_and_misspelt_ones_put_right() {
+    let mut client = Client::new(&[], &json!({}));
+    let uri = "file:///nowhere/part.cls";
+    let text = "UNITS/MM\nFEDRAT/100,MMPN\nSPINDLE/RPM,3000,CLW\n\nGOTO/0,0,1 $$ FED\nFINI\n";
+    client.open(uri, "plaintext", text);
+    let mut offered = |line, column| labels(&client.at("completion", uri, line, column));
+    let majors = offered(3, 0);
+    assert!(["FEDRAT", "CYCLE", "GOTO"].iter().all(|word| majors.iter().any(|one| one == word)));
+    // What is refused or says nothing is no help.
+    assert!(!majors.iter().any(|word| word == "TRACUT" || word == "PAINT"), "{majors:?}");
+    assert_eq!(offered(1, 7)[..3], ["MMPM", "IPM", "PERMIN"]);
+    assert!(offered(2, 8).is_empty(), "no word is SPINDLE");
+    assert!(offered(4, 17).is_empty(), "a remark");
+
+    let found = client.findings(uri, 1);
+    assert_eq!(told(&found), ["syntax 1:11-15", "unknown-word 2:0-7"], "{found:#?}");
+    let whole =
+        json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 5, "character": 0 } });
+    let actions = client.ask(
+        "textDocument/codeAction",
+        json!({ "textDocument": { "uri": uri }, "range": whole, "context": { "diagnostics": found } }),
+    );
+    let actions = actions["result"].as_array().unwrap().clone();
+    let titles: Vec<&str> = actions.iter().map(|one| one["title"].as_str().unwrap()).collect();
+    assert_eq!(titles, ["Write `MMPM`", "Write `SPINDL`"]);
+    for (version, action) in (2..).zip(&actions) {
+        let edit = &action["edit"]["changes"][uri][0];
+        let at = |end: &str, part: &str| edit["range"][end][part].as_u64().unwrap() as usize;
+        let part = [
+            at("start", "line"),
+            at("start", "character"),
+            at("end", "line"),
+            at("end", "character"),
+        ];
+        client.edit(uri, version, part, edit["newText"].as_str().unwrap());
+    }
+    assert_eq!(client.findings(uri, 3), Vec::<Value>::new());
+    assert_eq!(client.end().0, 0);
 }

@@ -278,3 +278,9 @@ pub fn told(findings: &[Value]) -> Vec<String> {
     });
     told.collect()
 }
+
+/// Names of what is offered.
+pub fn labels(items: &Value) -> Vec<String> {
+    let items = items.as_array().unwrap().iter();
+    items.map(|item| item["label"].as_str().unwrap().to_owned()).collect()
+}

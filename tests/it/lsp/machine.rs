@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use super::client::{Client, place, told, uri};
+use super::client::{Client, labels, place, told, uri};
 use crate::common::{assert_contains, root};
 
 /// `machines/ac-trunnion.toml`, in a folder of its own.
@@ -21,11 +21,6 @@ fn trunnion() -> (TempDir, String, String) {
 fn with(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "{from}");
     text.replacen(from, to, 1)
-}
-
-fn labels(items: &Value) -> Vec<String> {
-    let items = items.as_array().unwrap().iter();
-    items.map(|item| item["label"].as_str().unwrap().to_owned()).collect()
 }
 
 #[test]

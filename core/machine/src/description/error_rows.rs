@@ -12,6 +12,12 @@ pub(super) const MM_PER_M: f64 = 1e-3;
 /// Largest error that is taken for one, mm, and mm/m for turns: more is a slip of the unit.
 const MOST: [f64; 2] = [5.0, 20.0];
 
+/// Largest change of an error from place to place that is taken for one, mm a mm of travel, at levers of these lengths, mm: of
+/// the tip about what turns a little, and about a rotary axis. What is steeper is a slip of the place, and no control or
+/// search could follow it.
+const STEEPEST: f64 = 0.02;
+const LEVERS: [f64; 2] = [1000.0, 100.0];
+
 /// What is wrong with a table, and where: counted from zero.
 #[derive(Debug)]
 pub(super) struct RowFault {
@@ -100,6 +106,21 @@ pub(super) fn measured(
         if found.places.last().is_some_and(|last| *last >= place) {
             let message = format!("the places of the errors of {} do not rise", axis.name);
             return Err(fault(Some(0), message, "a row a place, from the least to the largest"));
+        }
+        if let Some((last, before)) = found.places.last().zip(found.motions.last()) {
+            let way = (place - last) * if axis.joint.rotary { LEVERS[1] } else { 1.0 };
+            let change = (motion.displacement - before.displacement).amax()
+                + (motion.turn - before.turn).amax() * LEVERS[0];
+            if change > STEEPEST * way {
+                let message = format!(
+                    "the errors of {} change by {} between {} and {}: more than {STEEPEST} mm a mm is none of a machine",
+                    axis.name,
+                    format_args!("{change:.4} mm"),
+                    axis.reading(*last),
+                    numbers[0]
+                );
+                return Err(fault(Some(0), message, "a place that is misspelt, or another unit"));
+            }
         }
         found.places.push(place);
         found.motions.push(motion);

@@ -70,8 +70,10 @@ impl Erring {
             }
             let count = 2 + rng.pick(6);
             let half = if rotary { 125.0 } else { 420.0 };
-            let mut places: Vec<f64> = (0..count).map(|_| rng.range(-half, half)).collect();
-            places.sort_by(f64::total_cmp);
+            // None so near to the next that what changes between them is none of a machine.
+            let gap = 2.0 * half / count as f64;
+            let place = |place| gap * (f64::from(place) + rng.range(0.1, 0.9)) - half;
+            let places: Vec<f64> = (0..count as u32).map(place).collect();
             let errors: Vec<[f64; 6]> = places
                 .iter()
                 .map(|_| std::array::from_fn(|_| rng.range(-0.02, 0.02) * 2.0))
@@ -284,6 +286,14 @@ fn what_cannot_be_a_table_of_errors_is_refused() {
         ("columns = [\"X\", \"EXX\", \"EXX\"]\nrows = [[0, 0, 0]]", "`EXX` is no column"),
         ("columns = [\"Y\", \"EXX\"]\nrows = [[0, 0]]", "`Y` is no column"),
         ("columns = [\"X\", \"EAX\"]\nrows = [[0, 21]]", "21.000 mm/m"),
+        (
+            "columns = [\"X\", \"EXX\"]\nrows = [[0, 0], [0.5, 0.011]]",
+            "change by 0.0110 mm between 0 and 0.5",
+        ),
+        (
+            "columns = [\"X\", \"EBX\"]\nrows = [[0, 0], [0.5, 0.011]]",
+            "change by 0.0110 mm between 0 and 0.5",
+        ),
         ("file = \"passwd\"", "no name of a file of errors"),
         ("file = \"x.csv\"\ncolumns = [\"X\"]", "stand here and in a file"),
         ("uncertainty = 1", "no rows"),

@@ -116,6 +116,20 @@ def test_a_fault_of_an_ini_file_is_told(change: tuple[str, str], told: str, tmp_
     assert not (tmp_path / "mill.toml").exists()
 
 
+def test_letters_may_be_said_together_or_one_by_one(tmp_path: Path) -> None:
+    name = f"{VISMACH}/max5/max5triv"
+    said = ACCEPTED[name][0]
+    together = written(configuration(name), tmp_path / "one.toml", *said, "--reversed", "BC").read_text()
+    apart = written(configuration(name), tmp_path / "two.toml", *said, "--reversed", "B", "--reversed", "C").read_text()
+    assert together == apart and apart.count("reversed  = true") == 2
+
+
+def test_a_hal_file_without_a_name_is_none(tmp_path: Path) -> None:
+    ini = mill(tmp_path)
+    ini.write_text(ini.read_text() + "\n[HAL]\nHALFILE =\n")
+    assert "[axis.X]" in written(ini, tmp_path / "mill.toml").read_text()
+
+
 # A line of a configuration that is other, and what comes of it: a part of the machine file, or of what is told.
 TRT = f"{VISMACH}/table-rotary-tilting/xyzac-trt"
 

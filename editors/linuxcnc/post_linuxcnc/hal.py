@@ -69,6 +69,8 @@ class Hal:
     def read(self, name: str) -> None:
         """A HAL file; of one in Tcl only its plain lines."""
         words = name.split()
+        if not words:
+            return
         path = LIBRARY / words[0][len("LIB:") :] if words[0].startswith("LIB:") else self.ini.beside(words[0])
         try:
             text = path.read_text(encoding="utf-8", errors="replace")

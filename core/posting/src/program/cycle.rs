@@ -112,6 +112,10 @@ const KINDS: [(&str, Cycle); 22] = [
 /// Kinds that go in pecks.
 const PECKED: [&str; 5] = ["DEEP", "DEEP2", "DEEPHL", "BRKCHP", "CHIP"];
 
+/// What is left behind a peck, mm, for which there is none of its own: a depth that the steps divide is hardly ever divided by
+/// their printed digits, and words of a program do not tell such depths apart.
+const REST: f64 = 0.005;
+
 /// Distance above the last depth at which a peck begins at feed, and by which a chip is broken: mm.
 const GAP: f64 = 0.5;
 
@@ -296,7 +300,7 @@ impl DrillCycle {
         emit(CycleLeg::Rapid(self.clearance));
         if let Some(peck) = self.peck {
             let mut depth = 0.0 - peck.step;
-            while depth > self.bottom {
+            while depth > self.bottom + REST {
                 emit(CycleLeg::Feed(depth));
                 if peck.full {
                     emit(CycleLeg::Rapid(self.clearance));
@@ -449,6 +453,28 @@ mod tests {
                 CycleLeg::Rapid(1.0),
             ]
         );
+    }
+
+    #[test]
+    fn a_depth_that_the_steps_divide_but_for_rounding_has_no_peck_of_nothing() {
+        for (depth, pecks) in [(20.902, 3), (20.9, 3), (20.9065, 3), (20.92, 4)] {
+            let definition = CycleDefinition {
+                kinds: vec!["DEEP".to_owned()],
+                depth: Some(depth),
+                clearance: Some(1.0),
+                step: Some(6.967_333_33),
+                ..CycleDefinition::default()
+            };
+            let legs = legs(&definition, 1.0);
+            let down: Vec<f64> = legs
+                .iter()
+                .filter_map(|leg| match leg {
+                    CycleLeg::Feed(down) => Some(*down),
+                    _ => None,
+                })
+                .collect();
+            assert_eq!((down.len(), down.last()), (pecks, Some(&-depth)));
+        }
     }
 
     #[test]

@@ -37,8 +37,8 @@ WITHIN = 0.01
 class Proven:
     """What the command says of a program: the table, by pairs of names in their order, and the faults."""
 
-    def __init__(self, folder: Path, machine: str = "m.toml") -> None:
-        words = [COMMAND, "clearance", "p.nc", "-m", machine]
+    def __init__(self, folder: Path, machine: str = "m.toml", *more: str) -> None:
+        words = [COMMAND, "clearance", "p.nc", "-m", machine, *more]
         run = subprocess.run(words, cwd=folder, capture_output=True, text=True)
         assert run.returncode in (0, 1), run.stderr
         self.said, self.clear = run.stdout + run.stderr, run.returncode == 0
@@ -375,3 +375,125 @@ def test_what_the_control_makes_of_a_block(tmp_path: Path, name: str) -> None:
     text = [*start, *blocks.split("|"), "G0 Z80.", "G49", "G53 G0 Z20.", "M30", "%", ""]
     (tmp_path / "p.nc").write_text("\n".join(text))
     assert Proven(tmp_path).clear == clear
+
+
+BESIDE = """extends = "vmc"
+name = "beside"
+[workpiece]
+mount = [0, 0, -300]
+[stock]
+block = [[-200, -200, -30], [200, 200, 0]]
+[tools.1]
+length = 100
+cutter = [[0, 5], [60, 5]]
+[clearance]
+rapid_axes = "together"
+pairs = [{ between = ["cutter", "stock"], rapid = 2 }]
+"""
+
+
+class BesideRule:
+    """Which rapids over a plane at Z0 are clear, as the page has it: a cutter of one radius keeps 2 mm from it."""
+
+    KEEP = 2.0
+    # Steps of 0.3 and 0.6 mm lie 30 degrees off one another: these are within.
+    ONWARD = math.cos(math.radians(30.001))
+
+    def __init__(self) -> None:
+        self.cuts: list[tuple[np.ndarray, np.ndarray]] = []
+        self.stands, self.first, self.last = "cut", np.zeros(3), np.zeros(3)
+
+    def been(self, one: np.ndarray, other: np.ndarray) -> tuple[bool, bool]:
+        """Whether a way goes where the cutter was at feed or above that, and whether back along it."""
+        above = back = False
+        for begin, end in self.cuts:
+            way = end - begin
+            flat = float(np.hypot(*way[:2]))
+            over = []
+            for point in (one, other):
+                to = point - begin
+                share = float(to[:2] @ way[:2]) / flat**2 if flat else 0.0
+                aside = np.hypot(*(to[:2] - share * way[:2]))
+                low = begin[2] + share * way[2] if flat else min(begin[2], end[2])
+                over.append(point[2] - low if aside < 1e-6 and -1e-9 <= share <= 1 + 1e-9 else -math.inf)
+            above |= min(over) >= -1e-9
+            back |= flat > 0 and np.hypot(*(other - one)[:2]) > 0 and all(abs(height) < 1e-9 for height in over)
+        return above, back
+
+    def feed(self, one: np.ndarray, other: np.ndarray) -> None:
+        self.cuts.append((one, other))
+        self.stands = "cut"
+
+    def rapid(self, one: np.ndarray, other: np.ndarray) -> bool:
+        """Takes a rapid; whether it is clear."""
+        way = other - one
+        unit = way / np.linalg.norm(way)
+        begins, ends = one[2] < self.KEEP, other[2] < self.KEEP
+        spared, back = self.been(one, other)
+        if not begins:
+            self.stands = "away"
+        may, onward, last = True, unit, way
+        if self.stands == "near":
+            onward = self.first
+            in_line = np.linalg.norm(np.cross(unit, self.last)) < 1e-9
+            last = self.last + way if in_line else way
+            returns = in_line and unit @ self.last < 0 and (not ends or np.linalg.norm(way) <= np.linalg.norm(self.last) + 1e-9)
+            if not returns and unit @ self.first < self.ONWARD:
+                may, onward = unit[2] >= self.ONWARD, np.array([0.0, 0.0, 1.0])
+            if not may:
+                onward, last = self.first, np.zeros(3)
+        if not ends:
+            self.stands = "away"
+        elif not (self.stands == "cut" and back):
+            self.stands, self.first, self.last = "near", onward, last
+        low = min(one[2], other[2])
+        return spared or low > (0.0 if may else self.KEEP)
+
+
+def test_rapids_beside_the_part_are_those_of_the_page(tmp_path: Path) -> None:
+    """Random cuts and rapids over a plane, by the rule as it is written for people."""
+    rng, count = drawn(904), Counter[str]()
+    (tmp_path / "m.toml").write_text(BESIDE)
+    for _ in range(rounds(150)):
+        rule, at, faults, low = BesideRule(), np.array([0.0, 0.0, 10.0]), 0, {}
+        lines = ["%", "O1", "G21 G17 G40 G80 G90 G94", "G53 G0 Z20.", "T1 M6", "S1000 M3", "G54"]
+        lines += ["G0 X0. Y0.", "G43 H1 Z10.", "G1 Z9. F500."]
+        at[2] = 9.0
+        rule.feed(np.array([0.0, 0.0, 10.0]), at)
+        for _ in range(25):
+            to, fed = at.copy(), rng.uniform() < 0.2
+            kind = rng.integers(0, 5)
+            if kind in (0, 1):
+                to[2] = rng.choice([0.3, 0.7, 1.2, 1.8, 9.0])
+            if kind in (1, 2, 3):
+                to[rng.integers(0, 2)] = rng.choice([0.0, 5.0, 10.0])
+            if kind == 3:
+                to += [*rng.choice([-0.3, 0.0, 0.3], 2), rng.choice([-0.6, 0.6])]
+            if kind == 4:
+                # As far as it was.
+                fed, to[2] = fed or at[2] > 0, rng.choice([-1.0, 0.3])
+            to = np.round(to, 3)
+            if 1.99 < to[2] < 2.01 or abs(to[2]) < 1e-9 or np.array_equal(to, at):
+                continue
+            lines.append(f"G{int(fed)} X{to[0]:.3f} Y{to[1]:.3f} Z{to[2]:.3f}")
+            if fed:
+                rule.feed(at, to)
+            else:
+                clear = rule.rapid(at, to)
+                faults += not clear
+                low[len(lines)] = max(0.0, min(at[2], to[2]))
+                count["rapids"] += 1
+                count["not clear"] += not clear
+            at = to
+        lines += ["G0 Z60.", "M30", "%", ""]
+        faults += not rule.rapid(at, np.array([*at[:2], 60.0]))
+        (tmp_path / "p.nc").write_text("\n".join(lines))
+        proven = Proven(tmp_path, "m.toml", "--csv", "lines.csv")
+        assert proven.rows["cutter T1", "stock"][3] == faults, "\n".join(lines) + proven.said
+        for row in csv.DictReader((tmp_path / "lines.csv").open()):
+            if (line := int(row["line"])) in low and row["clear_by"]:
+                assert float(row["clear_by"]) <= low[line] + ROUNDING, f"{row} {lines[line - 1]}"
+                count["told"] += 1
+    print(dict(count))
+    assert count["rapids"] > 10 * rounds(150) and count["rapids"] > 1.5 * count["not clear"] > 3 * rounds(150), count
+    assert count["told"] > 10 * rounds(150), count

@@ -68,6 +68,7 @@ mod predict_told;
 mod program_text;
 mod random_links;
 mod rapids;
+mod rapids_beside;
 mod readiness;
 mod real_files;
 mod report;

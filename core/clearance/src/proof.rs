@@ -6,6 +6,7 @@
 
 mod body;
 mod closest;
+mod fault;
 mod room;
 
 use nalgebra::Vector3;
@@ -22,7 +23,8 @@ use crate::shape::Shape;
 use room::{Lately, Room, Sleep, Spare};
 
 use body::may_touch;
-pub use body::{Body, BodyKind, Rules};
+pub use body::{Body, BodyKind, Look, Rules};
+pub use fault::{Fault, Verdict};
 
 /// Pieces of one motion that a pair is looked at on; what is not proven then is not.
 pub const MOST_PIECES: u64 = 1 << 13;
@@ -46,36 +48,8 @@ pub struct Move<'a> {
     /// Of a way that might as well be another one: it keeps so much more than the rules ask for, mm, a cutter from the stock
     /// among it, however near to it the way begins and ends.
     pub beyond: Option<f64>,
-}
-
-/// What is not clear.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// The bodies overlap or touch at a pose that is known.
-    Hits,
-    /// They come nearer than is to be kept, at a pose that is known.
-    Near,
-    /// Neither is proven.
-    Unproven,
-    /// Neither is, and nowhere that was looked at are they too near: after [`MOST_PIECES`] nothing more was looked at.
-    Unfinished,
-}
-
-/// Where two bodies are not proven to be clear.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fault {
-    /// What it is.
-    pub verdict: Verdict,
-    /// Line of the program.
-    pub line: u64,
-    /// Axis values, mm and radians.
-    pub joints: Joints,
-    /// They are no farther apart there, mm.
-    pub at_most: f64,
-    /// What is to be kept there, mm.
-    pub keep: f64,
-    /// The place on the first body, mm, frame of its link: nearest to the other, or in both.
-    pub point: Vector3<f64>,
+    /// It is another way by which the motion that was taken last may go.
+    pub instead: bool,
 }
 
 /// What is known of two bodies along the program.
@@ -87,8 +61,10 @@ pub struct PairResult {
     pub clear_by: f64,
     /// The nearest that was found, mm, and the line; not looked for closer than by five in a hundred.
     pub nearest: (f64, u64),
-    /// The first place where they are not clear, and the first that hits if there is one.
+    /// The first place where they are not clear.
     pub fault: Option<Fault>,
+    /// The worst: see [`Fault::is_worse`].
+    pub worst: Option<Fault>,
     /// Motions on which they are not clear.
     pub faults: u64,
 }
@@ -105,8 +81,9 @@ struct Pair {
     /// In the frame of the body that `nearer` looks from.
     planes: Option<Planes>,
     guess: [usize; 2],
-    /// Of a cutter and the stock.
+    /// Of a cutter and the stock, and ahead of the rapid that was taken last.
     beside: Beside,
+    before: Beside,
     /// Other rules than those of all pairs.
     rules: Option<Rules>,
     result: PairResult,
@@ -226,11 +203,18 @@ impl Proof {
     }
 
     /// Proves a motion, for all pairs that `looks` wants of it.
-    pub fn take(&mut self, motion: &Move<'_>, looks: impl Fn(&Body, &Body) -> bool) {
+    pub fn take(&mut self, motion: &Move<'_>, looks: impl Fn(&Body, &Body) -> Look) {
         let [from, to] = motion.way.ends.map(|stance| stance.joints);
-        if self.last.is_some_and(|last| last != from) {
+        if !motion.instead && self.last.is_some_and(|last| last != from) {
             // Nothing is known of how it came here.
             self.forget();
+        }
+        if motion.instead {
+            // It comes from where the other way began.
+            self.pairs.iter_mut().for_each(Pair::begin_anew);
+            self.sleep.end();
+        } else if motion.rapid {
+            self.pairs.iter_mut().for_each(|pair| pair.before = pair.beside);
         }
         self.last = Some(to);
         self.lately.take(&to);
@@ -249,8 +233,10 @@ impl Proof {
             if !motion.rapid {
                 pair.beside = Beside::default();
             }
-            if !looks(one, other) {
+            let look = looks(one, other);
+            if look == Look::LeaveOut {
                 pair.forget();
+                pair.beside = Beside::default();
                 continue;
             }
             let rules = pair.rules.as_ref().unwrap_or(rules);
@@ -261,7 +247,10 @@ impl Proof {
             let most = keeps[0].max(keeps[1]);
             let yields = motion.beyond.is_none() && may_touch(kinds) && keep > ALLOWANCE;
             let trial = Trial { bodies, motion, keep, yields, most, within, closely: true, spans };
-            *distances += pair.take(&trial, whole.as_ref());
+            *distances += match look {
+                Look::Spare { back } => pair.spare(&trial, whole.as_ref(), back),
+                _ => pair.take(&trial, whole.as_ref()),
+            };
         }
         if let Some(whole) = whole.as_ref().filter(|_| !sleeps) {
             sleep.begin(pairs, whole);
@@ -326,6 +315,7 @@ impl Pair {
             clear_by: f64::INFINITY,
             nearest: (f64::INFINITY, 0),
             fault: None,
+            worst: None,
             faults: 0,
         };
         let views = [view(one, other), view(other, one)];
@@ -338,6 +328,7 @@ impl Pair {
             planes: None,
             guess: [0; 2],
             beside: Beside::default(),
+            before: Beside::default(),
             rules: None,
             result,
         }
@@ -386,7 +377,7 @@ impl Pair {
 
     /// With the place where they overlap, unless that was told of them before.
     fn placed(&self, mut apart: Apart, [one, other]: [&Shape; 2], at: &Placement) -> Apart {
-        let told = self.result.fault.as_ref().is_some_and(|fault| fault.verdict == Verdict::Hits);
+        let told = self.result.worst.as_ref().is_some_and(|fault| fault.verdict == Verdict::Hits);
         if apart.at_most <= 0.0 && !told {
             apart.points = distance::meeting_of(one, other, at, &apart);
         }
@@ -425,9 +416,9 @@ impl Pair {
         let mut trial = *trial;
         if trial.yields {
             computed += 2;
-            let near = self.near_ends(&trial, whole);
+            let near = self.near_ends(&trial, whole, false);
             self.beside = beside;
-            if self.beside.rapid(near, trial.motion.way.ends) {
+            if self.beside.rapid(near, trial.motion.way.ends, false) {
                 trial.keep = ALLOWANCE;
             }
         }
@@ -452,17 +443,33 @@ impl Pair {
         computed
     }
 
-    /// Whether they are not proven to be apart by more than is to be kept where a motion begins and where it ends.
-    fn near_ends(&mut self, trial: &Trial<'_>, whole: &Piece) -> [bool; 2] {
+    /// Takes a motion on which a cutter goes where it has been: it is near behind it, or away; how many distances were computed.
+    fn spare(&mut self, trial: &Trial<'_>, whole: Option<&Piece>, back: bool) -> u64 {
+        self.forget();
+        let (true, Some(whole)) = (trial.yields, whole) else { return 0 };
+        let near = self.near_ends(trial, whole, true);
+        self.beside.rapid(near, trial.motion.way.ends, back);
+        2
+    }
+
+    /// Whether they are not proven to be apart by more than is to be kept where a motion begins and where it ends; `fresh`: what
+    /// a mesh encloses is near.
+    fn near_ends(&mut self, trial: &Trial<'_>, whole: &Piece, fresh: bool) -> [bool; 2] {
         let far = trial.keep + trial.within;
         let enough = Enough { wrapped: far, closely: far };
         let ends = whole.ends.each_ref();
-        ends.map(|joints| self.distance(trial.bodies, joints, false, enough).at_least < far)
+        ends.map(|joints| self.distance(trial.bodies, joints, fresh, enough).at_least < far)
     }
 
     /// Nothing is known of their distance any more.
     fn forget(&mut self) {
         (self.known, self.room) = (None, None);
+    }
+
+    /// The motion that was taken last may go another way.
+    fn begin_anew(&mut self) {
+        self.forget();
+        self.beside = self.before;
     }
 
     /// Finds a box about the end of a motion in which they are apart by all that is ever to be kept.
@@ -632,21 +639,15 @@ impl Pair {
     ) {
         self.forget();
         self.result.faults += 1;
-        let known = self.result.fault.as_ref().map(|fault| fault.verdict);
-        let worse = match known {
-            None => true,
-            Some(Verdict::Unfinished) => verdict != Verdict::Unfinished,
-            Some(known) => verdict == Verdict::Hits && known != Verdict::Hits,
+        let fault = Fault {
+            verdict,
+            line: trial.motion.line,
+            joints: *joints,
+            at_most: apart.map_or(f64::INFINITY, |apart| apart.at_most),
+            keep: trial.keep,
+            point: apart.map_or_else(Vector3::zeros, |apart| apart.points[0]),
         };
-        if worse {
-            self.result.fault = Some(Fault {
-                verdict,
-                line: trial.motion.line,
-                joints: *joints,
-                at_most: apart.map_or(f64::INFINITY, |apart| apart.at_most),
-                keep: trial.keep,
-                point: apart.map_or_else(Vector3::zeros, |apart| apart.points[0]),
-            });
-        }
+        let PairResult { fault: first, worst, .. } = &mut self.result;
+        fault.note([first, worst]);
     }
 }

@@ -1,8 +1,12 @@
-//! Where a tool has been: there nothing is left that it could touch, and it may go there again at rapid.
+//! Where a tool has been at feed: there nothing is left that it could touch, and it may go there again at rapid.
+
+use std::collections::VecDeque;
 
 use nalgebra::Vector3;
 use post_clearance::convex::Convex;
+use post_clearance::piece::Way;
 use post_machine::kinematics::Joints;
+use post_motion::path::{Curve, Interpolation, Stance, turns};
 
 use crate::field::Field;
 use crate::profile::{Frustum, ToolPose, frusta};
@@ -38,6 +42,29 @@ struct Gone {
     axis: Vector3<f64>,
     from: Vector3<f64>,
     way: Vector3<f64>,
+}
+
+/// A way on which a tool turns, all axes going evenly, or its tip going straight and the rotary axes evenly: by its ends alone
+/// it is known where the tool goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    /// Its ends.
+    pub ends: [Stance; 2],
+    /// The tip goes straight.
+    pub led: bool,
+}
+
+impl Turn {
+    /// That of a way on which the tool turns; none of another one, or where not so much is known.
+    pub fn of(way: &Way<'_>) -> Option<Self> {
+        let led = match way.interpolation {
+            Interpolation::Axes => false,
+            Interpolation::Tip(Curve::Straight) => true,
+            _ => return None,
+        };
+        let turns = !way.independent && turns(way.solver.chain(), way.ends);
+        turns.then(|| Self { ends: way.ends.map(|end| *end), led })
+    }
 }
 
 /// How far up a tool frees the way that it is drawn out on, mm from its tip.
@@ -90,6 +117,7 @@ pub struct Been {
     heights: Option<Heights>,
     gone: Vec<Gone>,
     next: usize,
+    turned: VecDeque<Turn>,
 }
 
 impl Been {
@@ -113,7 +141,13 @@ impl Been {
                 widest: profile.iter().map(|point| point[1]).fold(0.0, f64::max),
             }
         });
-        Self { profile: profile.to_vec(), heights, gone: Vec::new(), next: 0 }
+        Self {
+            profile: profile.to_vec(),
+            heights,
+            gone: Vec::new(),
+            next: 0,
+            turned: VecDeque::new(),
+        }
     }
 
     /// The tool went straight from one pose to the other, without turning, and whatever was there is gone.
@@ -129,6 +163,48 @@ impl Been {
     /// Nothing is known any more of where it has been.
     pub fn clear(&mut self) {
         (self.gone, self.next) = (Vec::new(), 0);
+        self.turned.clear();
+    }
+
+    /// The tool turned on a way, and whatever was there is gone.
+    pub fn add_turn(&mut self, turn: Turn) {
+        if self.turned.len() == MOST {
+            self.turned.pop_back();
+        }
+        self.turned.push_front(turn);
+    }
+
+    /// It goes a way on which it turns as it has gone it before, or back.
+    pub fn covers_turn(&self, turn: &Turn) -> bool {
+        let [from, to] = turn.ends;
+        let back = Turn { ends: [to, from], ..*turn };
+        self.turned.iter().any(|known| *known == *turn || *known == back)
+    }
+
+    /// A straight way without turning leads along one that is gone, and not along the tool axis.
+    pub fn is_along(&self, poses: [ToolPose; 2]) -> bool {
+        let (axial, _) = climb(&poses[0], &poses[1]);
+        let on =
+            |over: &Over| over.length == 0.0 && over.least.abs().max(over.most.abs()) <= lean(0.0);
+        !axial && self.over(poses).iter().any(on)
+    }
+
+    /// Between these shares of a straight way without turning it is not known that the tool has been there: ahead of the
+    /// first and behind the other it goes along lines that it has gone before.
+    pub fn shares(&self, [from, to]: [ToolPose; 2]) -> [f64; 2] {
+        let way = to.tip - from.tip;
+        let same = self.gone.iter().filter(|gone| (gone.axis - from.axis).norm() <= SAME);
+        let mut gone: Vec<[f64; 2]> = same.filter_map(|gone| gone.shares(from.tip, way)).collect();
+        gone.sort_by(|one, other| one[0].total_cmp(&other[0]));
+        let free = |first: f64, [begins, ends]: &[f64; 2]| {
+            if *begins <= first { first.max(*ends) } else { first }
+        };
+        let first = gone.iter().fold(0.0, free).min(1.0);
+        gone.sort_by(|one, other| other[1].total_cmp(&one[1]));
+        let free = |last: f64, [begins, ends]: &[f64; 2]| {
+            if *ends >= last { last.min(*begins) } else { last }
+        };
+        [first, gone.iter().fold(1.0, free).max(first)]
     }
 
     /// What has been gone straight along the same line as a way, above it or below.
@@ -237,6 +313,25 @@ struct Over {
 }
 
 impl Gone {
+    /// The shares of a way from a tip on at which this one begins and ends, the smaller first, and beyond 0 or 1 by no more than
+    /// digits leave; none where it does not lie on its line.
+    fn shares(&self, from: Vector3<f64>, way: Vector3<f64>) -> Option<[f64; 2]> {
+        let length = way.norm();
+        let slack = lean(0.0);
+        if length <= slack {
+            return None;
+        }
+        let along = way / length;
+        let ends = [self.from, self.from + self.way].map(|end| end - from);
+        let [one, other] = ends.map(|end| along.dot(&end));
+        let beside = ends.map(|end| (end - along * along.dot(&end)).norm());
+        let in_line = beside.iter().zip([one, other]).all(|(beside, at)| *beside <= lean(at));
+        let [low, high] = [one.min(other), one.max(other)];
+        let ends = [if low <= slack { low.min(0.0) } else { low }, high];
+        let ends = [ends[0], if high >= length - slack { high.max(length) } else { high }];
+        (in_line && high > low).then(|| ends.map(|at| at / length))
+    }
+
     /// How both ends of a way lie over it: none where they do not.
     fn over(&self, ends: [Vector3<f64>; 2]) -> Option<Over> {
         let split = |vector: Vector3<f64>| {

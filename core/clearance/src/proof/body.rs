@@ -1,4 +1,4 @@
-//! Bodies, and what is to be kept between them.
+//! Bodies, what is to be kept between them, and what of that is looked at.
 
 use crate::ALLOWANCE;
 use crate::shape::Shape;
@@ -54,6 +54,20 @@ impl Rules {
         let keep = if may_touch(kinds) { 0.0 } else { self.keep };
         [keep, self.rapid].map(|keep| keep.max(ALLOWANCE))
     }
+}
+
+/// What is done with two bodies on a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// That they keep their distance is proven.
+    Prove,
+    /// A cutter at rapid where it has been: nothing is left there of the stock that it could touch.
+    Spare {
+        /// It goes back along the cut that it has just made.
+        back: bool,
+    },
+    /// Nothing is, and behind it it is not known how they came where they are.
+    LeaveOut,
 }
 
 /// What cuts, and what is cut: at feed they touch, and a rapid begins and ends as near as the CL file has it.

@@ -1,18 +1,19 @@
 //! How near any two bodies come on each motion, for who shows that along the path.
 
-use super::{Body, Move, Proof, Trial};
+use super::{Body, Look, Move, Proof, Trial};
 use crate::ALLOWANCE;
 
 impl Proof {
     /// The distance that all pairs that `looks` wants keep from one another on a motion, mm: proven, and mostly no less than
-    /// the truth by more than five in a hundred. 0 where two touch, or nothing is proven; none where no pair is looked at.
+    /// the truth by more than five in a hundred. 0 where two touch, or nothing is proven; none where no pair is looked at. A
+    /// cutter that is spared is as near to the stock as it is.
     ///
     /// What was found of a pair that is not near holds for later motions, so that most cost nothing. The results of
     /// [`Proof::results`] are none then.
     pub fn closest(
         &mut self,
         motion: &Move<'_>,
-        looks: impl Fn(&Body, &Body) -> bool,
+        looks: impl Fn(&Body, &Body) -> Look,
     ) -> Option<f64> {
         let [from, to] = motion.way.ends.map(|stance| stance.joints);
         if self.last.is_some_and(|last| last != from) {
@@ -31,7 +32,7 @@ impl Proof {
         let (mut nearest, mut clear_by) = (f64::INFINITY, f64::INFINITY);
         for pair in pairs {
             let [one, other] = pair.result.bodies.map(|place| &bodies[place]);
-            if !looks(one, other) {
+            if looks(one, other) == Look::LeaveOut {
                 pair.forget();
                 continue;
             }

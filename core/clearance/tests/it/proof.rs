@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 use post_clearance::convex::Convex;
 use post_clearance::piece::Way;
-use post_clearance::proof::{Body, BodyKind, Move, Proof, Rules, Verdict};
+use post_clearance::proof::{Body, BodyKind, Look, Move, Proof, Rules, Verdict};
 use post_clearance::shape::Shape;
 use post_machine::kinematics::{Joints, Solver};
 use post_motion::path::{Curve, Interpolation, Stance};
@@ -138,7 +138,10 @@ impl Bodies {
         independent: bool,
     ) {
         let way = Way { solver, interpolation: way, ends, independent };
-        self.proof.take(&Move { way, rapid: independent, line: 1, beyond: None }, |_, _| true);
+        self.proof.take(
+            &Move { way, rapid: independent, line: 1, beyond: None, instead: false },
+            |_, _| Look::Prove,
+        );
     }
 }
 
@@ -380,7 +383,10 @@ fn on_each_motion_the_nearest_two_are_told() {
                 independent: false,
             };
             let found = proof
-                .closest(&Move { way, rapid: false, line: 1, beyond: None }, |_, _| true)
+                .closest(
+                    &Move { way, rapid: false, line: 1, beyond: None, instead: false },
+                    |_, _| Look::Prove,
+                )
                 .unwrap();
             let mut sampled = f64::INFINITY;
             for look in 0..=24 {
@@ -457,7 +463,9 @@ fn pairs_that_sleep_are_as_far_apart_as_is_proven() {
             let beyond = (rng.pick(4) == 0).then(|| rng.range(0.0, 4.0));
             let keep = if rapid { rules.rapid } else { rules.keep } + beyond.unwrap_or(0.0);
             let before: Vec<u64> = proof.results().map(|result| result.faults).collect();
-            proof.take(&Move { way, rapid, line: motion, beyond }, |_, _| true);
+            proof.take(&Move { way, rapid, line: motion, beyond, instead: false }, |_, _| {
+                Look::Prove
+            });
             let now = proof.results().zip(before);
             let kept = now.filter(|(result, before)| result.faults == *before);
             let kept: BTreeSet<[usize; 2]> = kept.map(|(result, _)| result.bodies).collect();
@@ -592,7 +600,10 @@ fn what_a_mesh_encloses_hits() {
                 ends: [&at, &at],
                 independent: false,
             };
-            proof.take(&Move { way, rapid: false, line: 1, beyond: None }, |_, _| true);
+            proof.take(
+                &Move { way, rapid: false, line: 1, beyond: None, instead: false },
+                |_, _| Look::Prove,
+            );
             proof.results().next().unwrap().faults
         });
         assert_eq!(found[0], found[1]);

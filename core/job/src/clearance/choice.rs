@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
 use post_clearance::piece::Way;
-use post_clearance::proof::{Body, BodyKind, Move, Proof};
+use post_clearance::proof::{Body, BodyKind, Look, Move, Proof};
 use post_machine::description::{Machine, RapidAxes};
 use post_machine::diagnostic::{Diagnostic, Severity};
 use post_machine::kinematics::Joints;
@@ -129,13 +129,16 @@ impl<'a> ChoiceBodies<'a> {
             let kinds = [one.kind, other.kind];
             let touches = kinds.contains(&BodyKind::Cutter) && kinds.contains(&BodyKind::Stock);
             let stock = if one.kind == BodyKind::Stock { one } else { other };
-            off_part || !touches || rapid && stock.link != 0
+            match off_part || !touches || rapid && stock.link != 0 {
+                true => Look::Prove,
+                false => Look::LeaveOut,
+            }
         };
         let track = self.track(&ends[0]);
         track.stands = ends[1];
         let before: Vec<u64> = track.proof.results().map(|result| result.faults).collect();
         let beyond = (way.kind == TrialWayKind::Across).then_some(COARSE);
-        track.proof.take(&Move { way: way_of, rapid, line: 0, beyond }, looks);
+        track.proof.take(&Move { way: way_of, rapid, line: 0, beyond, instead: false }, looks);
         let mut results = track.proof.results().zip(before);
         let (hit, _) = results.find(|(result, before)| result.faults > *before)?;
         Some(hit.bodies.map(|place| track.proof.bodies()[place].name.clone()))

@@ -14,7 +14,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joint;
 use post_readback::{Motion, SpindleState};
 use post_removal::along::{self, Found, Mounted, Place, Seat, Watched};
-use post_removal::been::Been;
+use post_removal::been::{Been, Turn};
 use post_removal::chip::Chip;
 use post_removal::compare::surface_of;
 use post_removal::field::{Cutter, Field, Volume};
@@ -117,6 +117,8 @@ pub(super) struct Against<'a> {
     pub rapid: bool,
     /// The spindle certainly turns.
     pub spins: bool,
+    /// How near anything comes is told, of what is spared too.
+    pub told: bool,
 }
 
 /// What a motion does to the stock.
@@ -382,10 +384,13 @@ impl CutStock {
         let straight = mounted.and_then(|mounted| mounted.straight(way));
         // A shank no thicker than the edges goes where they have been on the same line, higher up.
         let shank = cuts && tool.parts.iter().any(|part| part.kind == PartKind::Shank);
+        let turn = if straight.is_none() { Turn::of(way) } else { None };
+        let again = !cuts && turn.is_some_and(|turn| self.been.covers_turn(&turn));
         // What it goes along again, or above, it has been in before.
-        let been = straight
-            .filter(|_| !cuts || shank)
-            .is_some_and(|poses| self.been.covers(Some(&mut self.field), poses));
+        let been = again
+            || straight
+                .filter(|_| !cuts || shank)
+                .is_some_and(|poses| self.been.covers(Some(&mut self.field), poses));
         let above = straight
             .filter(|_| shank)
             .is_some_and(|poses| self.been.covers_above(tool.edge, poses));
@@ -401,6 +406,12 @@ impl CutStock {
             PartKind::Cutter => cuts || been,
             PartKind::Shank => been || above || led,
         };
+        if against.rapid && been {
+            let back = again || straight.is_some_and(|poses| self.been.is_along(poses));
+            for part in tool.parts.iter_mut().filter(|part| spared(part)) {
+                self.spare(&mut part.held, against, way, back);
+            }
+        }
         let (behind, ahead): (Vec<_>, Vec<_>) =
             tool.parts.iter_mut().filter(|part| !spared(part)).partition(|part| follows(part));
         let mut clear = true;
@@ -426,7 +437,7 @@ impl CutStock {
         tool.free = cuts || clear;
         // However much of it is known, the tool was there, and what was in its way is gone.
         if let Some((_, mounted)) = &tool.cutter
-            && (cuts || clear && !been)
+            && (cuts || clear && !against.rapid)
         {
             match straight {
                 Some(poses) => self.been.add(poses),
@@ -434,6 +445,9 @@ impl CutStock {
                     let ends = way.ends.map(|stance| mounted.pose(&stance.joints));
                     ends.into_iter().for_each(|pose| self.been.add([pose; 2]));
                 }
+            }
+            if let Some(turn) = turn.filter(|_| cuts) {
+                self.been.add_turn(turn);
             }
         }
         clear
@@ -459,6 +473,31 @@ impl CutStock {
         clear
     }
 
+    /// Takes a rapid on which a part of the tool goes where it has been: whether it is near behind it.
+    fn spare(&mut self, held: &mut Held, against: &Against<'_>, way: &Way<'_>, back: bool) {
+        let Held { watched, keep: [_, keep], yields, beside: [before, behind], .. } = held;
+        let minds = *yields && *keep > 0.0;
+        if !minds && !against.told {
+            return;
+        }
+        // The nearest of the table is that of what is proven.
+        let mut watched = watched.clone();
+        let distances = watched.distances();
+        if minds {
+            *behind = *before;
+            let near = watched.near_ends(&mut self.field, way, *keep, WITHIN);
+            behind.rapid(near, way.ends, back);
+        }
+        if against.told {
+            let by = match watched.along(&mut self.field, way, 0.0, WITHIN) {
+                Found::Clear(by) => by,
+                Found::Hits(_) | Found::Unproven(_) => 0.0,
+            };
+            self.clear_by = self.clear_by.min(by);
+        }
+        self.distances += watched.distances() - distances;
+    }
+
     /// Holds a body against what is left on a way; whether it stays clear.
     fn stays_clear(&mut self, held: &mut Held, against: &Against<'_>, way: &Way<'_>) -> bool {
         let Held { row, watched, keep, yields, beside: [before, behind] } = held;
@@ -467,7 +506,7 @@ impl CutStock {
         if *yields && keep > 0.0 {
             *behind = *before;
             let near = watched.near_ends(&mut self.field, way, keep, WITHIN);
-            if behind.rapid(near, way.ends) {
+            if behind.rapid(near, way.ends, false) {
                 keep = 0.0;
             }
         }
@@ -489,15 +528,9 @@ impl CutStock {
         let Place { joints, at_most, point } = place;
         row.faults += 1;
         self.clear_by = 0.0;
-        let worse = row
-            .fault
-            .as_ref()
-            .is_none_or(|fault| verdict == Verdict::Hits && fault.verdict != Verdict::Hits);
-        if worse {
-            let point = self.seat.frame.point(point);
-            let line = against.motion.line;
-            row.fault = Some(Fault { verdict, line, joints, at_most, keep, point });
-        }
+        let (point, line) = (self.seat.frame.point(point), against.motion.line);
+        let fault = Fault { verdict, line, joints, at_most, keep, point };
+        fault.note([&mut row.fault, &mut row.worst]);
         false
     }
 

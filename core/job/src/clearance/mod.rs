@@ -9,10 +9,12 @@ mod names;
 mod of_job;
 mod outlines;
 mod pair_row;
+mod spared;
 mod start;
 mod stock_left;
 mod summary;
 pub mod text;
+mod told;
 mod tool_cut;
 mod watch;
 

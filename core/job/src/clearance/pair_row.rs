@@ -13,14 +13,24 @@ pub struct PairRow {
     pub nearest: (f64, u64),
     /// Motions on which they are not clear.
     pub faults: u64,
-    /// The first place where they are not, or the first that hits.
+    /// The first place where they are not.
     pub fault: Option<Fault>,
+    /// The worst.
+    pub worst: Option<Fault>,
 }
 
 impl PairRow {
     /// A pair of which nothing is known yet.
     pub(super) fn new(names: [String; 2]) -> Self {
         let nearest = (f64::INFINITY, 0);
-        Self { names, clear_by: f64::INFINITY, nearest, faults: 0, fault: None }
+        Self { names, clear_by: f64::INFINITY, nearest, faults: 0, fault: None, worst: None }
+    }
+
+    /// They are a stock and what cuts it.
+    pub(super) fn is_cut(&self) -> bool {
+        let begin = |names: [&str; 2]| {
+            self.names.iter().zip(names).all(|(name, begins)| name.starts_with(begins))
+        };
+        begin(["stock", "cutter "]) || begin(["cutter ", "stock"])
     }
 }

@@ -3,22 +3,24 @@
 use std::collections::BTreeMap;
 
 use post_clearance::piece::Way;
-use post_clearance::proof::{Body, BodyKind, Fault, MOST_PIECES, Move, Proof, Verdict};
+use post_clearance::proof::{Body, BodyKind, Look, Move, Proof};
 use post_machine::check::number as decimals;
-use post_machine::description::{Machine, RapidAxes};
+use post_machine::description::RapidAxes;
 use post_machine::diagnostic::{Diagnostic, Short, SourcePlace};
 use post_readback::{
     BlockEffect, CycleKind, Interpolation, Motion, MotionKind, ProgramEvent, SpindleState, Stance,
     Standstill,
 };
-use post_removal::been::{Been, goes_alone};
+use post_removal::been::{Been, Turn, goes_alone};
 use post_removal::chip::Chip;
 use post_removal::profile::ToolPose;
 
 use super::bodies::{ToolShape, of_tool};
 use super::left::{Against, CutStock, Taken};
 use super::pair_row::PairRow;
+use super::spared::{Spared, parts};
 use super::start::{Known, Start};
+use super::told::{help, told};
 use super::{ClearanceFound, Cuts, proof};
 use crate::nc_program::NcControl;
 
@@ -27,9 +29,6 @@ const FEED_PLACE: f64 = 0.5;
 
 /// A length in force may differ by so much from that of the tool, mm: wear, and what a measurement leaves.
 const WEAR: f64 = 0.5;
-
-/// A distance to keep that is no longer need not be said, mm: there is none.
-const LEAST_SAID: f64 = 1e-3;
 
 /// What is told of a motion.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +54,7 @@ pub(super) struct ClearanceWatch<'a, 'h> {
     stocks: Vec<CutStock>,
     /// The tool whose bodies are looked at, and its length, mm.
     tool: Option<(u32, Option<f64>)>,
-    /// Where the tool has been since it was changed: another one would have been there before.
+    /// Where the tool has been at feed since it was changed: another one would have been there before.
     been: Been,
     /// Where the program begins.
     start: Start,
@@ -210,30 +209,40 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             independent: at_rapid && !together,
         };
         let poses = goes(motion, way.independent);
-        let been = rapid && poses.is_some_and(|poses| self.been.covers(None, poses));
+        let spared = if rapid { Spared::of(&self.been, poses, &way) } else { None };
         let spins = spins(motion);
-        // What does not turn cuts nothing: its cutter is held against the stock as any other body. Where it has been is known
-        // in the frame of the part, and of a stock that hangs elsewhere nothing follows from it.
-        let cuts = |stock: &Body| !rapid && spins || been && stock.link == 0;
+        // What does not turn cuts nothing: its cutter is held against the stock as any other body.
         let stocks = &self.stocks;
-        let looks = |one: &Body, other: &Body| {
+        let looks = |one: &Body, other: &Body, spared: Option<Spared>| {
             let (stock, beside) = match one.kind {
                 BodyKind::Stock => (one, other),
                 _ => (other, one),
             };
             if stock.kind != BodyKind::Stock {
-                return true;
+                return Look::Prove;
             }
             let lessens = || stocks.iter().any(|cut| cut.is(stock));
-            let spared = beside.kind == BodyKind::Cutter && cuts(stock);
-            !(spared || CutStock::holds_left(beside) && lessens())
+            let cutter = beside.kind == BodyKind::Cutter;
+            if cutter && !rapid && spins || CutStock::holds_left(beside) && lessens() {
+                return Look::LeaveOut;
+            }
+            match spared.filter(|spared| cutter && spared.holds(stock)) {
+                Some(Spared { back, .. }) => Look::Spare { back },
+                None => Look::Prove,
+            }
         };
         let known = self.start.knows(&self.control.machine, motion);
-        // Of what is not looked at it is not known what was there.
-        match (&known, poses) {
-            (Known::Way, Some(poses)) if !been => self.been.add(poses),
-            (Known::Way | Known::End, _) => self.been.add([at(&motion.to); 2]),
-            (Known::Nothing, _) => {}
+        let legs = match (&known, poses) {
+            (Known::Way, Some(poses)) if rapid && spared.is_none() => self.been.shares(poses),
+            _ => [0.0, 1.0],
+        };
+        match poses {
+            _ if rapid || self.control.machine.stocks.is_empty() => {}
+            Some(poses) => self.been.add(poses),
+            None => {
+                self.been.add([at(&motion.to); 2]);
+                Turn::of(&way).into_iter().for_each(|turn| self.been.add_turn(turn));
+            }
         }
         let way = match known {
             Known::Way => way,
@@ -252,16 +261,22 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
         let mut nearest = None;
         let mut stands = false;
         let hits = self.cutter_faults();
-        for way in ways.iter().copied() {
-            let motion = Move { way, rapid, line, beyond: None };
-            self.proof.take(&motion, looks);
-            if let Some((_, proof)) = &mut self.told {
-                let distance = proof.closest(&motion, looks);
-                nearest = distance.into_iter().chain(nearest).reduce(f64::min);
+        for (place, way) in ways.iter().enumerate() {
+            let spared = if place > 0 { Spared::of(&self.been, None, way) } else { spared };
+            for (ends, spared) in parts(way, legs, spared) {
+                let way = Way { ends: ends.each_ref(), ..*way };
+                let motion = Move { way, rapid, line, beyond: None, instead: place > 0 };
+                let looks = |one: &Body, other: &Body| looks(one, other, spared);
+                self.proof.take(&motion, looks);
+                if let Some((_, proof)) = &mut self.told {
+                    let distance = proof.closest(&motion, looks);
+                    nearest = distance.into_iter().chain(nearest).reduce(f64::min);
+                }
             }
         }
         stands |= !rapid && !spins && self.cutter_faults() > hits;
-        let against = Against { motion, ways, rapid, spins };
+        let told = self.told.is_some();
+        let against = Against { motion, ways, rapid, spins, told };
         let mut chip: Option<Chip> = None;
         for stock in &mut self.stocks {
             match stock.motion(&against) {
@@ -417,8 +432,8 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
                 row.nearest = result.nearest;
             }
             row.faults += result.faults;
-            if row.fault.is_none() {
-                row.fault.clone_from(&result.fault);
+            for fault in [&result.fault, &result.worst].into_iter().flatten() {
+                fault.clone().note([&mut row.fault, &mut row.worst]);
             }
         }
     }
@@ -468,17 +483,7 @@ impl<'a, 'h> ClearanceWatch<'a, 'h> {
             if let Some(fault) = &row.fault {
                 let message = told(&self.control.machine, row, fault);
                 let by_cells = found.left.iter().any(|left| left.name == row.names[0]);
-                let help = match fault.verdict {
-                    Verdict::Unfinished => {
-                        "rapid_axes = \"together\" under [clearance], if the control interpolates rapids; else a rapid in shorter pieces, or with the tool retracted before axes turn"
-                    }
-                    Verdict::Unproven if by_cells => {
-                        "another path or tool; a finer `resolution` of the stock tells what is near to a wall from it"
-                    }
-                    _ => {
-                        "another fixture, tool or path; what is only drawn too large is drawn again, a pair that may touch is left out by [clearance] ignore"
-                    }
-                };
+                let help = help(row, fault, by_cells);
                 found
                     .findings
                     .push(Diagnostic::error("clearance", message).at(at(fault.line)).help(help));
@@ -521,46 +526,4 @@ fn goes(motion: &Motion, independent: bool) -> Option<[ToolPose; 2]> {
     let bends = motion.turns() || motion.way.is_curved();
     let strays = bends || independent && !goes_alone(&from.joints, &to.joints);
     (!strays).then(|| [at(from), at(to)])
-}
-
-/// What is wrong with a pair of bodies.
-fn told(machine: &Machine, row: &PairRow, fault: &Fault) -> String {
-    let [one, other] = &row.names;
-    let kept = match fault.keep > LEAST_SAID {
-        true => format!(", and {} mm are to be kept", Short(fault.keep)),
-        false => String::new(),
-    };
-    let mut message = match fault.verdict {
-        Verdict::Hits => format!("{one} hits {other}"),
-        Verdict::Near => format!(
-            "{one} comes within {} mm of {other}; {} mm are to be kept",
-            Short(fault.at_most),
-            Short(fault.keep)
-        ),
-        Verdict::Unfinished => {
-            format!(
-                "that {one} stays clear of {other} is not proven: the work ran out after {MOST_PIECES} pieces of the way; where it was looked at it is clear"
-            )
-        }
-        Verdict::Unproven if fault.at_most.is_finite() => {
-            format!(
-                "that {one} stays clear of {other} is not proven: where it was looked at last they are no more than {} mm apart",
-                Short(fault.at_most)
-            ) + &kept
-        }
-        Verdict::Unproven => format!(
-            "that {one} stays clear of {other} is not proven: how the axes go on the way is not known"
-        ),
-    };
-    if fault.verdict != Verdict::Unfinished {
-        message.push_str(&format!(" at {}", machine.shown(&fault.joints)));
-    }
-    if fault.at_most.is_finite() && fault.verdict != Verdict::Unfinished {
-        let [x, y, z] = fault.point.into();
-        message.push_str(&format!(", on {one} at [{x:.3}, {y:.3}, {z:.3}]"));
-    }
-    if row.faults > 1 {
-        message.push_str(&format!("; not clear in {} motions", row.faults));
-    }
-    message
 }

@@ -129,6 +129,19 @@ fn binary(
     Ok(())
 }
 
+/// Words that a line of a text begins with.
+const WORDS: [&str; 7] = ["vertex", "facet", "outer", "endloop", "endfacet", "solid", "endsolid"];
+
+/// The next word of a line, what is no letter of a text among the spaces.
+fn word_of<'a>(line: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let is_space = |byte: &u8| byte.is_ascii_whitespace() || matches!(byte, 0 | 0x1a);
+    let begin = line.iter().position(|byte| !is_space(byte))?;
+    let rest = &line[begin..];
+    let (word, rest) = rest.split_at(rest.iter().position(is_space).unwrap_or(rest.len()));
+    *line = rest;
+    Some(word)
+}
+
 fn text(
     file: &mut impl BufRead,
     take: &mut dyn FnMut([Vertex; 3]) -> Result<(), StlFault>,
@@ -150,17 +163,17 @@ fn text(
             continue;
         }
         // Names may be of any letters; some systems end a text with a letter of their own.
-        let line = String::from_utf8_lossy(&line);
-        let line = line.trim_matches(['\0', '\x1a']);
-        let mut words = line.split_ascii_whitespace();
-        let Some(word) = words.next() else { continue };
-        let word = word.to_ascii_lowercase();
-        ended = word == "endsolid";
-        match word.as_str() {
+        let mut rest = line.as_slice();
+        let Some(word) = word_of(&mut rest) else { continue };
+        let known = WORDS.iter().find(|known| word.eq_ignore_ascii_case(known.as_bytes()));
+        let known = known.copied().unwrap_or_default();
+        ended = known == "endsolid";
+        match known {
             "vertex" if corners.len() < 3 => {
                 let mut corner = [0.0; 3];
                 for value in &mut corner {
-                    let Some(found) = words.next().and_then(|word| word.parse().ok()) else {
+                    let found = word_of(&mut rest).and_then(|word| str::from_utf8(word).ok());
+                    let Some(found) = found.and_then(|word| word.parse().ok()) else {
                         return fault("`vertex` and three numbers are expected");
                     };
                     *value = found;

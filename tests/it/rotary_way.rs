@@ -155,3 +155,43 @@ fn a_way_that_cannot_be_is_refused() {
     assert_eq!(shorter.code, 0, "{}", shorter.err);
     assert!(words(&text).iter().all(|(word, _)| !word.starts_with('-')), "{text}");
 }
+
+/// Where no linear axis moves, a feed above what is asked is found all the same.
+#[test]
+fn a_feed_above_that_of_the_cl_file_is_found_where_rotary_axes_turn_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut cl = "UNITS/MM\nLOADTL/1\nSPINDL/3000,RPM,CLW\nMULTAX/ON\nRAPID\nGOTO/60,0,-20,1,0,0\nFEDRAT/100,MMPM\n".to_owned();
+    for step in 0..10 {
+        let (sine, cosine) = libm::sincos(f64::from(12 * step).to_radians());
+        let (x, y) = (30.0 * cosine, 30.0 * sine);
+        writeln!(cl, "GOTO/{x:.5},{y:.5},-20,{cosine:.9},{sine:.9},0").unwrap();
+    }
+    fs::write(folder.path().join("part.cls"), cl + "FINI\n").unwrap();
+    // The part turns about the line of its own middle: of each chord the axis makes an arc.
+    let with =
+        ["-m", "lathe-xzc-radial", "--tool-length", "100", "--set", "accuracy.tolerance=0.2"];
+    let made = post_in(folder.path(), &[&["-q", "-o", "part.nc", "part.cls"][..], &with].concat());
+    assert_eq!(made.code, 0, "{}", made.err);
+    let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    // The word of the feed of a block that turns C alone.
+    let turns = |line: &&str| {
+        let letters = line.split(' ').filter_map(|word| word.chars().next());
+        letters.filter(|letter| matches!(letter, 'X' | 'Z' | 'C')).eq(['C']) && line.contains(" F")
+    };
+    let line = program.lines().find(turns).unwrap_or_else(|| panic!("{program}"));
+    let word = line.split(' ').find(|word| word.starts_with('F')).unwrap();
+    let feed: f64 = word[1..].parse().unwrap();
+    for factor in [1.0, 0.5, 1.1, 1.2, 1.5, 1.9] {
+        let other = line.replace(word, &format!("F{:.4}", feed * factor));
+        fs::write(folder.path().join("other.nc"), program.replacen(line, &other, 1)).unwrap();
+        let against = ["verify", "-q", "other.nc", "--against", "part.cls"];
+        let read = post_in(folder.path(), &[&against[..], &with].concat());
+        let says = match factor {
+            1.0 => "",
+            0.5 => "feed is below",
+            _ => "feed is above",
+        };
+        let code = i32::from(!says.is_empty());
+        assert!(read.code == code && read.err.contains(says), "{factor}: {}\n{other}", read.err);
+    }
+}

@@ -157,15 +157,10 @@ impl<C: Course> Verifier<'_, C> {
         // Of a short way a rounded word is much.
         let mut rounded = ROUNDED / way;
         if motion.way == Interpolation::Axes {
-            // What is printed is the feed along the axes, which may go a much shorter way than the tip.
-            let joints = motion.state.solver.chain().joints().iter().enumerate();
-            let square: f64 = joints
-                .filter(|(_, joint)| !joint.rotary)
-                .map(|(index, _)| motion.to.joints[index] - motion.from.joints[index])
-                .map(|way| way * way)
-                .sum();
-            // Rounded down, so that it is never above what is asked.
-            rounded += (2.0 * PLACE * motion.minutes / square.sqrt().max(1e-6)).min(MOST_ROUNDED);
+            // What is printed is the feed along the axes, which may go a much shorter way than the tip; of rotary axes alone
+            // it counts degrees. Rounded down, so that it is never above what is asked.
+            let along = printed_way(motion).max(1e-6);
+            rounded += (2.0 * PLACE * motion.minutes / along).min(MOST_ROUNDED);
             // Where rotary axes turn the tip goes another way than the points that its time was counted by, within the
             // tolerance.
             let turned = |joint: usize| motion.to.joints[joint] != motion.from.joints[joint];
@@ -175,6 +170,22 @@ impl<C: Course> Verifier<'_, C> {
             }
         }
         rounded
+    }
+}
+
+/// The way that a feed a minute counts, mm; degrees where no linear axis moves.
+fn printed_way(motion: &Motion) -> f64 {
+    let [mut linear, mut rotary] = [0.0; 2];
+    for (index, joint) in motion.state.solver.chain().joints().iter().enumerate() {
+        let way = motion.to.joints[index] - motion.from.joints[index];
+        match joint.rotary {
+            true => rotary += way * way,
+            false => linear += way * way,
+        }
+    }
+    match linear > 0.0 {
+        true => linear.sqrt(),
+        false => rotary.sqrt().to_degrees(),
     }
 }
 

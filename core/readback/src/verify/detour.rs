@@ -147,6 +147,10 @@ impl Detour {
                 && (passed.any(|pose| end.on_the_line(pose, slack[0], lean))
                     || next.is_some_and(|next| end.is_over(next, machine, slack)))
         };
+        // An arm that is led to such a place has other values there than at the points that are asked for, and what turns
+        // first has them already.
+        let led: Vec<Joints> =
+            open.iter().filter(|end| on_a_line(end)).map(|end| end.joints).collect();
         let mut open = open.iter().enumerate().filter(|end| !goes(end));
         open.find_map(|(_, end)| {
             let poses = asked.iter().map(|asked| &asked.pose).chain(passed);
@@ -161,6 +165,7 @@ impl Detour {
                     end.astray(
                         machine,
                         &asked,
+                        &led,
                         !own || proven || retracted,
                         RapidAllowance { axes: slack, lean },
                     )
@@ -218,11 +223,13 @@ impl RapidEnd {
         })
     }
 
-    /// The axis that is farthest from where it could stand; between two places that are asked for, if `between`.
+    /// The axis that is farthest from where it could stand: between two places that are asked for, if `between`, or where
+    /// it is `led` on the line of the tool at one.
     fn astray(
         &self,
         machine: &Machine,
         asked: &[AskedPlace],
+        led: &[Joints],
         between: bool,
         allowed: RapidAllowance,
     ) -> Option<StrayRapid> {
@@ -256,6 +263,9 @@ impl RapidEnd {
                 by = by.min(libm::fabs(apart));
             };
             asked.iter().for_each(|asked| allow(asked.joints[place]));
+            if !is_depth(machine, place) {
+                led.iter().for_each(|led| allow(led[place]));
+            }
             let [least, most] = span(asked, place);
             if between || self.machine || goes_round {
                 allow(value.clamp(least, most.max(least)));

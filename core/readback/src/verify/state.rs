@@ -457,12 +457,16 @@ pub(super) fn spindle_name(spindle: SpindleState) -> String {
         SpindleState::Oriented => "stands at an angle".to_owned(),
         SpindleState::Clockwise(rpm) => format!("turns clockwise at {rpm}/min"),
         SpindleState::CounterClockwise(rpm) => format!("turns counter-clockwise at {rpm}/min"),
-        SpindleState::Surface { speed, clockwise, .. } => {
+        SpindleState::Surface { speed, most, clockwise } => {
             let sense = match clockwise {
                 true => "clockwise",
                 false => "counter-clockwise",
             };
-            format!("turns {sense} at {speed} m/min of cutting speed")
+            let limit = match most {
+                Some(most) => format!("at most {most}/min"),
+                None => "no limit of its speed".to_owned(),
+            };
+            format!("turns {sense} at {speed} m/min of cutting speed, {limit}")
         }
     }
 }

@@ -317,6 +317,96 @@ fn tools_are_led_straight_and_read_back() {
     }
 }
 
+/// A program of straight moves in a language, posted in a folder.
+fn straight(dialect: &str, file: &str) -> (TempDir, Vec<&'static str>, String) {
+    let folder = folder(&ARMS[0], dialect);
+    let mut with = WITH.to_vec();
+    with.extend(["--set", "control.moves=\"straight\""]);
+    if dialect == "rapid" {
+        with.extend(["--set", "control.rapid.tool=\"spindle\""]);
+    }
+    let posted = post(folder.path(), &[&["part.cls", "-o", file][..], &with[..]].concat());
+    assert_eq!(posted.code, 0, "{dialect}: {}", posted.err);
+    let program = fs::read_to_string(folder.path().join(file)).unwrap();
+    (folder, with, program)
+}
+
+/// Poses are those of the machine file only with its tool, in its frame: another one is found at the first move that goes by
+/// it, whenever the program sets it, and what it leaves to the control is told.
+#[test]
+fn tool_and_frame_of_straight_moves_are_those_of_the_machine_file() {
+    let tool = "error[nc-modes]: the frame of the tool is";
+    let base = "error[nc-modes]: the frame of poses is";
+    let unset_tool = "the program does not set the frame of the tool (";
+    let unset_base = "the program does not set the frame of poses (";
+    // What is written in place of what; a line ahead of the last straight move where that is nothing.
+    let cases: [(&str, &str, &str, &str); 19] = [
+        ("rapid", "fine,spindle;", "fine,other;", tool),
+        ("rapid", "fine,spindle;", "fine,tool0;", tool),
+        ("rapid", "fine,spindle;", "fine,spindle\\WObj:=fixture;", base),
+        ("rapid", "fine,spindle;", "fine,spindle\\WObj:=wobj0;", ""),
+        ("rapid", "fine,spindle;", "fine,spindle\\Corr;", "a switch behind the tool of MOVEL"),
+        ("krl", "$TOOL=TOOL_DATA[1]", "$TOOL=TOOL_DATA[7]", tool),
+        ("krl", "$BASE=$NULLFRAME", "$BASE=BASE_DATA[2]", base),
+        ("krl", "$TOOL=TOOL_DATA[1]", "BAS(#TOOL,1)", ""),
+        ("krl", "$BASE=$NULLFRAME", "BAS(#BASE,0)", ""),
+        ("krl", "$TOOL=TOOL_DATA[1]\n", "", unset_tool),
+        ("krl", "$BASE=$NULLFRAME\n", "", unset_base),
+        ("krl", "", "$TOOL=TOOL_DATA[7]", tool),
+        ("krl", "", "$TOOL=$NULLFRAME", tool),
+        ("krl", "", "BAS(#TOOL,3)", tool),
+        ("krl", "", "BAS(#BASE,1)", base),
+        ("krl", "", "$BASE={X 1,Y 0,Z 0,A 0,B 0,C 0}", base),
+        ("krl", "", "BAS(#INITMOV,0)", unset_tool),
+        ("krl", "", "BAS(#VEL_CP,2)", ""),
+        ("urscript", "", "  set_tcp(p[0,0,0.1,0,0,0])", tool),
+    ];
+    for (dialect, file, begins) in [
+        ("rapid", "part.mod", "MoveL "),
+        ("urscript", "part.script", "  movel("),
+        ("krl", "part.src", "LIN "),
+    ] {
+        let (folder, with, program) = straight(dialect, file);
+        let path = folder.path();
+        let last = program.rfind(begins).unwrap();
+        let (ahead, behind) = program.split_at(last);
+        let verify = |text: &str| {
+            fs::write(path.join("other.txt"), text).unwrap();
+            let against = ["verify", "other.txt", "--against", "part.cls", "--posted"];
+            post(path, &[&against[..], &with[..]].concat())
+        };
+        for (_, from, to, says) in cases.iter().filter(|case| case.0 == dialect) {
+            // Of RAPID the moves say it, of others what stands ahead of them.
+            let other = match (from.is_empty(), dialect) {
+                (true, _) => format!("{ahead}{to}\n{behind}"),
+                (false, "rapid") => format!("{ahead}{}", behind.replacen(from, to, 1)),
+                (false, _) => program.replacen(from, to, 1),
+            };
+            assert_ne!(other, program, "{from}");
+            let read = verify(&other);
+            let code = i32::from(!says.is_empty());
+            let told = read.code == code && read.err.contains(says);
+            assert!(told, "{dialect} {from} {to}: {} {}", read.code, read.err);
+            if says.is_empty() {
+                assert_eq!(read.err, "", "{from} {to}");
+            } else if from.is_empty() || dialect == "rapid" {
+                // At the line of the move that goes by it.
+                let line = other[..other.rfind(begins).unwrap()].lines().count() + 1;
+                assert!(read.err.contains(&format!("other.txt:{line}")), "{to}: {}", read.err);
+            }
+        }
+        if dialect == "rapid" {
+            // A quaternion of twice the length.
+            let list = behind.split(['[', ']']).nth(4).unwrap();
+            let parts = list.split(',').map(|part| 2.0 * part.parse::<f64>().unwrap());
+            let twice: Vec<String> = parts.map(|part| part.to_string()).collect();
+            let read = verify(&format!("{ahead}{}", behind.replacen(list, &twice.join(","), 1)));
+            let says = "the quaternion of MOVEL is 2.0000 long";
+            assert!(read.code == 1 && read.err.contains(says), "{}", read.err);
+        }
+    }
+}
+
 /// A tool that is led straight turns evenly about one direction, and where it turns about itself too its axis leaves the
 /// great circle between two points: a program without the points that hold it there is found, by as much as it strays.
 #[test]
@@ -431,8 +521,8 @@ fn a_rail_goes_along_in_straight_moves() {
             assert!(libm::hypot(tip.y - rail, tip.x) < 2300.0, "{dialect}: {tip:?} from {rail}");
         }
         let verify = |name: &str| {
-            let against = [&["verify", name, "--against", "part.cls"][..], &with].concat();
-            post(path, &against)
+            let against = ["verify", name, "--against", "part.cls", "--posted"];
+            post(path, &[&against[..], &with].concat())
         };
         let read = verify(file);
         assert_eq!(read.code, 0, "{dialect}: {}{}", read.out, read.err);
@@ -463,12 +553,55 @@ fn a_robot_a_rail_and_a_positioner_are_nine_axes() {
     let beside = |line: &str| line.split("],[").nth(1).map(|list| list.matches("9E9").count());
     let cuts: Vec<&str> = program.lines().filter(|line| line.contains("\\T:=")).collect();
     assert!(!cuts.is_empty() && cuts.iter().all(|line| beside(line) == Some(3)), "{program}");
-    // Read back the nine keep the tip on its way; tolerance of the file 0.05 mm.
-    let against = ["verify", "part.mod", "--against", "part.cls", "--summary", "-"];
-    let read = post(path, &[&against[..], &with].concat());
-    let told: serde_json::Value = serde_json::from_str(&read.out).unwrap();
+    let read = |name: &str| {
+        let against = ["verify", name, "--against", "part.cls", "--posted", "--summary", "-"];
+        post(path, &[&against[..], &with].concat())
+    };
+    // Tolerance of the file 0.05 mm.
+    let right = read("part.mod");
+    let told: serde_json::Value = serde_json::from_str(&right.out).unwrap();
     let tip = told["tip"]["value"].as_f64().unwrap();
-    assert!(tip > 0.0 && tip <= 0.05, "{tip}: {}", read.err);
+    assert!(tip > 0.0 && tip <= 0.05, "{tip}: {}", right.err);
+    assert_eq!((right.code, right.err.as_str()), (0, ""));
+    // The first rapid of some axes alone turns one of the wrist elsewhere, and the next leads it back.
+    let wrist = |line: &&str| line.starts_with("here.robax.rax_5:=") && !line.contains("=0.0000");
+    let turned = program.lines().find(wrist).unwrap();
+    let value: f64 = turned.split(['=', ';']).nth(1).unwrap().parse().unwrap();
+    let other = turned.replace(&format!("{value:.4}"), &format!("{:.4}", value + 25.0));
+    assert_ne!(other, turned);
+    fs::write(path.join("other.mod"), program.replacen(turned, &other, 1)).unwrap();
+    let wrong = read("other.mod");
+    let found = wrong.code == 1 && wrong.err.contains("a rapid takes V");
+    assert!(found, "{}", wrong.err);
+}
+
+/// KRL has the velocity of the tip, and a turn about a tip that stands none: in one block, however small, or in several.
+#[test]
+fn a_turn_about_a_standing_tip_has_no_velocity_of_the_tip() {
+    let folder = folder(&ARMS[0], "krl");
+    let path = folder.path();
+    let begin = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,9000,CLW\nRAPID\nGOTO/-20,0,40,0,0,1\nFEDRAT/800,MMPM\nGOTO/-20,0,0,0,0,1\n";
+    let posted = |turn: &str| {
+        let cl = format!("{begin}{turn}GOTO/20,0,0,0.2,0,1\nSPINDL/OFF\nFINI\n");
+        fs::write(path.join("turn.cls"), cl).unwrap();
+        let straight = ["--set", "control.moves=\"straight\""];
+        post(path, &[&["turn.cls", "-o", "-"][..], &straight, &WITH].concat())
+    };
+    let at = |lean: f64| format!("GOTO/0,0,0,{lean},0,1\n");
+    let leans: [&[f64]; 5] =
+        [&[0.0, 0.002], &[0.0, 0.02], &[0.0, 0.2], &[0.0, 0.1, 0.2], &[0.0, 0.01, 0.02, 0.03]];
+    for leans in leans {
+        let turn: String = leans.iter().map(|lean| at(*lean)).collect();
+        let refused = posted(&turn);
+        let says = "the tool turns about its tip, which the velocity of a tip does not tell";
+        assert!(refused.code == 1 && refused.err.contains(says), "{leans:?}: {}", refused.err);
+        assert_eq!(refused.out, "");
+    }
+    // On its way it may turn as it likes, in steps as small as those of any CL file.
+    let steps = (1..=40).map(|step| f64::from(step) * 0.02);
+    let turn: String = steps.map(|x| format!("GOTO/{x:.3},0,0,{:.5},0,1\n", x / 100.0)).collect();
+    let right = posted(&turn);
+    assert_eq!(right.code, 0, "{}", right.err);
 }
 
 /// How straight moves tell where the tool points is asked for by name, and means them.

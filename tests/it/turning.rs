@@ -232,7 +232,100 @@ fn what_is_wrong_in_a_program_that_turns_is_told() {
     wrong("F0.25", "F0.2", "feed is below");
     wrong("G95 ", "G94 ", "feed is below");
     wrong("S200 M", "S250 M", "cutting speed");
+    let limits = "200 m/min of cutting speed, at most 3500/min in a cut, and the CL file asks that it turns clockwise at 200 m/min of cutting speed, at most 3000/min";
+    wrong("S3000", "S3500", limits);
     wrong("X44.000", "X44.500", "off the CL path");
+}
+
+/// Words of X count as the control is told: diameters under G7, DIAMON, radii under G8, DIAMOF. A program says it ahead of
+/// its first word; the other one doubles or halves the part, and is found.
+#[test]
+fn a_program_says_whether_its_words_are_diameters() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = [[15.0, 0.0], [15.0, -20.0], [22.0, -31.0]];
+    let cl = turned(&path, Speed::Surface(200.0, 3000.0), 0.25);
+    for (dialect, words) in [("linuxcnc", ["G7", "G8"]), ("siemens", ["DIAMON", "DIAMOF"])] {
+        for (is, has) in [("2 * X", 0), ("X", 1)] {
+            let (word, other) = (words[has], words[1 - has]);
+            let set = [format!("control.dialect={dialect}"), format!("word.X.is=\"{is}\"")];
+            let set = [set[0].as_str(), set[1].as_str()];
+            let made = run(folder.path(), &cl, &set);
+            assert_eq!(made.code, 0, "{dialect} {is}: {}", made.err);
+            let said = |line: &&str| line.split(' ').any(|own| own == word);
+            let line = made.out.lines().find(said).unwrap_or_else(|| panic!("{}", made.out));
+            let first = made.out.lines().position(|own| own == line).unwrap();
+            let words_of_x = |line: &str| line.split(' ').any(|own| own.starts_with('X'));
+            assert!(!made.out.lines().take(first).any(words_of_x), "{}", made.out);
+            let told = |to: &str| {
+                let own: Vec<&str> =
+                    line.split(' ').map(|own| if own == word { to } else { own }).collect();
+                let nc = folder.path().join("other.nc");
+                fs::write(&nc, made.out.replacen(line, &own.join(" "), 1)).unwrap();
+                verified(folder.path(), &nc, &set)
+            };
+            let right = told(word);
+            assert_eq!((right.code, right.err.as_str()), (0, ""), "{dialect} {is}");
+            let wrong = told(other);
+            assert!(wrong.code == 1 && wrong.err.contains("off the CL path"), "{}", wrong.err);
+            let unsaid = told("");
+            let says = "the program does not set diameters or radii (";
+            assert!(unsaid.err.contains(says), "{dialect} {is}: {}", unsaid.err);
+        }
+    }
+}
+
+/// Under DIAM90 a way is a radius and a position a diameter, under DIAMON both are diameters.
+#[test]
+fn ways_are_radii_under_diam90() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = [[15.0, 0.0], [15.0, -20.0], [22.0, -31.0]];
+    let set = ["control.dialect=siemens"];
+    let made = run(folder.path(), &turned(&path, Speed::Fixed(900.0), 0.25), &set);
+    assert_eq!(made.code, 0, "{}", made.err);
+    // From a diameter of 30 mm to 44 mm.
+    for (mode, way, code) in
+        [("DIAM90", 7, 0), ("DIAMON", 14, 0), ("DIAMON", 7, 1), ("DIAM90", 14, 1), ("DIAMOF", 7, 1)]
+    {
+        let words = |word: &str| match word.starts_with("X44.") {
+            true => format!("X=IC({way}.)"),
+            false => word.replace("DIAMON", mode),
+        };
+        let lines = made.out.lines().map(|line| line.split(' ').map(words).collect::<Vec<_>>());
+        let text: Vec<String> = lines.map(|words| words.join(" ")).collect();
+        let text = text.join("\n") + "\n";
+        assert!(text.contains("=IC("), "{text}");
+        let nc = folder.path().join("other.nc");
+        fs::write(&nc, text).unwrap();
+        let told = verified(folder.path(), &nc, &set);
+        assert_eq!(told.code, code, "{mode} {way}: {}{}", told.out, told.err);
+    }
+}
+
+/// The lengths of a turning tool act in X and Z under G18 alone on the 840D.
+#[test]
+fn the_840d_turns_in_g18() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = [[15.0, 0.0], [15.0, -20.0], [22.0, -31.0]];
+    let set = ["control.dialect=siemens"];
+    let made = run(folder.path(), &turned(&path, Speed::Fixed(900.0), 0.25), &set);
+    assert_eq!(made.code, 0, "{}", made.err);
+    assert!(made.out.contains("G18 ") && !made.out.contains("G17"), "{}", made.out);
+    let told = |to: &str| {
+        let nc = folder.path().join("other.nc");
+        // Wherever it stands, alone too.
+        fs::write(&nc, made.out.replace("G18", to)).unwrap();
+        verified(folder.path(), &nc, &set)
+    };
+    let right = told("G18");
+    assert_eq!((right.code, right.err.as_str()), (0, ""));
+    for plane in ["G17", "G19"] {
+        let wrong = told(plane);
+        let says =
+            format!("the plane is {plane}, and the lengths of a turning tool act in X and Z");
+        assert!(wrong.code == 1 && wrong.err.contains(&says), "{}", wrong.err);
+    }
+    let unsaid = told("");
+    assert!(unsaid.err.contains("the program does not set plane (G1"), "{}", unsaid.err);
 }
 
 #[test]

@@ -148,6 +148,7 @@ pub fn dialect_knowing(
             OutputUnits::Inch => Units::Inch,
         },
         tcp: control.tcp == Tcp::Control,
+        turns_part: machine.spindle.surface_speed,
         words: axis_words::order(machine)
             .into_iter()
             .map(|place| {
@@ -159,6 +160,7 @@ pub fn dialect_knowing(
                     signed: axis.signed,
                     depth: axis_words::is_depth(machine, place),
                     carries_part: axis.carries_part,
+                    diameter: axis_words::is_diameter(machine, place),
                     travel: axis.travel.map(|travel| travel.map(|end| axis.reading(end))),
                 }
             })
@@ -169,6 +171,7 @@ pub fn dialect_knowing(
                 signed: false,
                 depth: false,
                 carries_part: false,
+                diameter: false,
                 travel: None,
             }))
             .collect(),

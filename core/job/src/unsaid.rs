@@ -5,7 +5,7 @@ use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 use post_plugin::Meaning;
-use post_readback::interpret::{ModalGroup, ModesInForce, ReadReport};
+use post_readback::interpret::{ContraryMode, ModalGroup, ModesInForce, ReadReport};
 
 use super::nc_program::DialectVocabulary;
 use super::plugin_finder;
@@ -34,6 +34,7 @@ impl Unsaid<'_> {
         findings.extend(self.comes_down());
         findings.extend(self.cut_off());
         findings.extend(self.modes(finder, machine));
+        findings.extend(self.contrary());
         findings.extend(self.retract());
         findings.extend(self.own.then(|| self.end()).flatten());
         if plugin_finder::text(finder, machine, "tapping").as_deref() == Some("rigid") {
@@ -122,6 +123,31 @@ impl Unsaid<'_> {
         );
         let help = "set it in the first lines of the program: a reset of the control does not";
         Some(self.graded("nc-modes", message).help(help).at(self.at(*line)))
+    }
+
+    /// Modes that it sets otherwise than the machine file has them.
+    fn contrary(&self) -> impl Iterator<Item = Diagnostic> + '_ {
+        self.report.contrary.iter().map(|contrary| {
+            let ContraryMode { line, group, has, wants } = contrary;
+            let name = group.name();
+            let wanted = wants.as_deref().unwrap_or("what the program does not set");
+            let message = match group {
+                ModalGroup::Plane => format!(
+                    "the {name} is {has}, and the lengths of a turning tool act in X and Z under {wanted} alone"
+                ),
+                _ => format!(
+                    "{name} is {has} in a straight move, and that of the machine file is {wanted}"
+                ),
+            };
+            let help = match group {
+                ModalGroup::Plane => "set G18 ahead of the first motion",
+                ModalGroup::ToolFrame => {
+                    "set the tool that the machine file stands for ahead of it, or name it there: `tool` of the dialect"
+                }
+                _ => "poses count from the frame of the machine file: set that ahead of it",
+            };
+            Diagnostic::error("nc-modes", message).help(help).at(self.at(*line))
+        })
     }
 
     /// Programs of this machine end a tilted plane that was left on, by the options of their dialect.

@@ -115,6 +115,12 @@ pub fn coordinate(name: &str) -> usize {
     }
 }
 
+/// The word of the axis at `place` is a diameter: twice its position.
+pub fn is_diameter(machine: &Machine, place: usize) -> bool {
+    let twice = libm::fabs(libm::fabs(own_factor(machine, place)) - 2.0) < 1e-9;
+    twice && !machine.axes[place].joint.rotary
+}
+
 /// What the word of the axis at `joint` multiplies it by.
 fn own_factor(machine: &Machine, joint: usize) -> f64 {
     machine.word_map.as_ref().map_or(1.0, |map| map.factor(joint))

@@ -64,7 +64,7 @@ pub struct Lexicon {
     /// A feed a minute counts along all axes together where no tip is kept.
     all_axes: bool,
     /// Bits of the modes that the dialect has words for.
-    modes: u8,
+    modes: u16,
     /// A cycle returns to a level that the program names.
     return_levels: bool,
     /// A constant cutting speed is a kind of the feed, and every other kind ends it.
@@ -91,8 +91,8 @@ impl Lexicon {
             empty: BTreeMap::new(),
             choices: Vec::new(),
             modes: match language {
-                // They count in their own units, and have none of these modes.
-                Language::Joints => 0,
+                // They count in their own units, and have none of the other modes.
+                Language::Joints => ModalGroup::of_robots(words),
                 // Its head names the units, I the ways and R0 the path; the plane is that of the tool call.
                 Language::Conversational => {
                     ModalGroup::named(words) & ModalGroup::TiltedPlane.bit()
@@ -160,7 +160,7 @@ impl Lexicon {
     }
 
     /// Bits of the modes that a program must set itself, as the dialect names them ([`ModalGroup`]).
-    pub(crate) fn modes(&self) -> u8 {
+    pub(crate) fn modes(&self) -> u16 {
         self.modes
     }
 
@@ -248,6 +248,13 @@ impl Lexicon {
     /// What a name means.
     pub(crate) fn name(&self, name: &str) -> WordMeaning {
         self.names.get(name).copied().unwrap_or(WordMeaning::Unknown)
+    }
+
+    /// A name that means this, the first of the alphabet.
+    pub(crate) fn name_of(&self, meaning: Meaning) -> Option<&str> {
+        let mut names = self.names.iter();
+        let found = names.find(|(_, sense)| **sense == WordMeaning::Means(meaning));
+        found.map(|(name, _)| name.as_str())
     }
 
     /// What a name with nothing between its parentheses means.

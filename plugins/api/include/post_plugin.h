@@ -129,6 +129,8 @@ typedef struct {
     double least[3]; /* of the tip, mm, part frame */
     double largest[3];
     double time; /* seconds; NaN is not known */
+    uint32_t turns_part; /* 1 if the spindle turns the part: a lathe */
+    uint32_t diameters; /* words that are twice the position of their axis: a bit by their place in `words` */
 } PostSetup;
 
 /* One step of a program. What its numbers and texts are stands below at POST_EVENT_ of its kind; POST_AT_LINEAR_FEED

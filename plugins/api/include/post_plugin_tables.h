@@ -179,6 +179,7 @@
 #define POST_MEANING_POSE_MOVE 201u
 #define POST_MEANING_JOINTS_NOW 202u
 #define POST_MEANING_STRAIGHT_MOVE 209u
+#define POST_MEANING_DIAMETER_OF_POSITIONS 210u
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");
@@ -238,7 +239,7 @@ POST_ASSERT(offsetof(PostCurve, tip_at) == 8, "PostCurve.tip_at");
 POST_ASSERT(offsetof(PostCurve, axis_peak) == 16, "PostCurve.axis_peak");
 POST_ASSERT(offsetof(PostCurve, axis_at) == 24, "PostCurve.axis_at");
 POST_ASSERT(offsetof(PostCurve, terms) == 32, "PostCurve.terms");
-POST_ASSERT(sizeof(PostSetup) == 200 && POST_ALIGN(PostSetup) == 8, "PostSetup");
+POST_ASSERT(sizeof(PostSetup) == 208 && POST_ALIGN(PostSetup) == 8, "PostSetup");
 POST_ASSERT(offsetof(PostSetup, size) == 0, "PostSetup.size");
 POST_ASSERT(offsetof(PostSetup, program) == 8, "PostSetup.program");
 POST_ASSERT(offsetof(PostSetup, machine) == 24, "PostSetup.machine");
@@ -259,6 +260,8 @@ POST_ASSERT(offsetof(PostSetup, tools_len) == 136, "PostSetup.tools_len");
 POST_ASSERT(offsetof(PostSetup, least) == 144, "PostSetup.least");
 POST_ASSERT(offsetof(PostSetup, largest) == 168, "PostSetup.largest");
 POST_ASSERT(offsetof(PostSetup, time) == 192, "PostSetup.time");
+POST_ASSERT(offsetof(PostSetup, turns_part) == 200, "PostSetup.turns_part");
+POST_ASSERT(offsetof(PostSetup, diameters) == 204, "PostSetup.diameters");
 POST_ASSERT(sizeof(PostFormat) == 104 && POST_ALIGN(PostFormat) == 8, "PostFormat");
 POST_ASSERT(offsetof(PostFormat, size) == 0, "PostFormat.size");
 POST_ASSERT(offsetof(PostFormat, words) == 8, "PostFormat.words");

@@ -208,6 +208,10 @@ pub struct PostSetup {
     pub largest: [f64; 3],
     /// The program's time, seconds; NaN if not known.
     pub time: f64,
+    /// 1 if the spindle turns the part: a lathe.
+    pub turns_part: u32,
+    /// The axis words that are diameters, twice the position of their axis: a bit by their place in `words`.
+    pub diameters: u32,
 }
 
 /// One event: see [`EVENTS`](crate::EVENTS) for the numbers and texts of each kind. Those that a reader does not

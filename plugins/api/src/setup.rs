@@ -16,6 +16,8 @@ pub struct Setup<'a> {
     pub units: Units,
     /// The control keeps the tip on its path (G43.4, TRAORI, M128): linear words are the tip in the part frame.
     pub tcp: bool,
+    /// The spindle turns the part, and the tool stands: a lathe.
+    pub turns_part: bool,
     /// The axis words of a move, in the order in which they are written.
     pub words: &'a [AxisWord<'a>],
     /// Options from the machine file, checked against [`OptionSpec`] and completed by the defaults.
@@ -82,6 +84,18 @@ impl<'a> Setup<'a> {
         Kinematics { table: count(true), head: count(false) }
     }
 
+    /// Tools are turned with in X and Z, the only axes that there are.
+    pub fn turns_in_zx(&self) -> bool {
+        let named = |name| self.words.iter().any(|word| word.name == name);
+        let two = self.words.iter().all(|word| !word.rotary && matches!(word.name, "X" | "Z"));
+        self.turns_part && two && named("X") && named("Z")
+    }
+
+    /// X is a diameter.
+    pub fn has_diameters(&self) -> bool {
+        self.words.iter().any(|word| word.name == "X" && word.diameter)
+    }
+
     /// An option's value. Every declared option has one.
     pub fn option(&self, key: &str) -> Option<Value<'a>> {
         self.options.iter().find(|(name, _)| *name == key).map(|(_, value)| *value)
@@ -139,6 +153,8 @@ pub struct AxisWord<'a> {
     pub depth: bool,
     /// The axis carries the part, else the tool.
     pub carries_part: bool,
+    /// Its word is a diameter: twice the position of the axis.
+    pub diameter: bool,
     /// Least and largest position of the axis as the machine shows it, mm or degrees, whatever the units are;
     /// none for one without ends.
     pub travel: Option<[f64; 2]>,

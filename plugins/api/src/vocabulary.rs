@@ -383,5 +383,14 @@ codes! {
         JointsNow = 202 "JOINTS_NOW",
         /// The tool of an arm is led straight to a pose, turning evenly about one direction: MoveL, LIN, movel.
         StraightMove = 209 "STRAIGHT_MOVE",
+        /// X is a diameter where it is a position, and a radius where it is a way: DIAM90.
+        DiameterOfPositions = 210 "DIAMETER_OF_POSITIONS",
+        /// The frame of a tool that an arm's straight moves lead from here on: `$TOOL`, set_tcp.
+        ToolFrame = 211 "TOOL_FRAME",
+        /// The frame of the tool that the machine file stands for: `TOOL_DATA[1]`, a tooldata's name. That of its poses is
+        /// [`Meaning::WorkOffsetOff`].
+        OwnToolFrame = 212 "OWN_TOOL_FRAME",
+        /// Tool and frame of an arm by numbers or from the control's defaults: BAS.
+        ToolAndFrame = 213 "TOOL_AND_FRAME",
     }
 }

@@ -29,6 +29,8 @@ pub struct ProgramSetup {
     pub units: Units,
     /// See [`Setup::tcp`].
     pub tcp: bool,
+    /// See [`Setup::turns_part`].
+    pub turns_part: bool,
     /// The axis words, in the order in which they are written.
     pub words: Vec<ProgramWord>,
     /// The options of the machine file, as given.
@@ -56,6 +58,8 @@ pub struct ProgramWord {
     pub depth: bool,
     /// The axis carries the part.
     pub carries_part: bool,
+    /// See [`AxisWord::diameter`].
+    pub diameter: bool,
     /// See [`AxisWord::travel`].
     pub travel: Option<[f64; 2]>,
 }
@@ -101,6 +105,7 @@ impl ProgramSetup {
                 signed: word.signed,
                 depth: word.depth,
                 carries_part: word.carries_part,
+                diameter: word.diameter,
                 travel: word.travel,
             })
             .collect();
@@ -119,6 +124,7 @@ impl ProgramSetup {
             machine: &self.machine,
             units: self.units,
             tcp: self.tcp,
+            turns_part: self.turns_part,
             words: &words,
             options: &options,
             cl_file: &self.cl_file,

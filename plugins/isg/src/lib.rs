@@ -61,6 +61,14 @@ impl Control for Isg {
         ..Table::ISO
     };
 
+    fn table(setup: &Setup<'_>) -> &'static Table {
+        match setup.has_diameters() {
+            true => DIAMETERS,
+            false if setup.turns_part => RADII,
+            false => Self::TABLE,
+        }
+    }
+
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         no_range(setup, "a sign in front of such a word is the direction in which it turns")?;
         if setup.units == Units::Inch && !setup.flag("inch_feeds") {
@@ -99,6 +107,12 @@ fn apart(register: u32) -> String {
         "the radius of register {register} is asked for, and D names length and radius together"
     )
 }
+
+/// Of a machine whose words of X are diameters.
+const DIAMETERS: &Table = &Table { safe: "G17 G40 G51 G90 G94 G162", ..*<Isg as Control>::TABLE };
+
+/// Of a lathe whose words of X are radii.
+const RADII: &Table = &Table { safe: "G17 G40 G52 G90 G94 G162", ..*<Isg as Control>::TABLE };
 
 /// Tool centre point control on.
 const TRAFO: &str = "#TRAFO ON";

@@ -57,6 +57,7 @@ const fn word(name: &str, rotary: bool, depth: bool) -> AxisWord<'_> {
         signed: false,
         depth,
         carries_part: rotary,
+        diameter: false,
         // The trunnion has ends, its table none.
         travel: match name.as_bytes() {
             b"A" => Some([-120.0, 120.0]),

@@ -21,8 +21,8 @@ struct Krl {
     approximate: String,
     /// Where the tool is led straight next, mm and degrees.
     pose: Option<String>,
-    /// Where the tip stands, mm; none where nobody knows.
-    tip: Option<[f64; 3]>,
+    /// Where the tool stands; none where nobody knows.
+    at: Option<ToolPose>,
     /// The velocity of the tip that is in force, as printed.
     velocity: String,
 }
@@ -46,10 +46,10 @@ const OPTIONS: &[OptionSpec] = &[
 const WORDS: &[(&str, Meaning)] = &[
     ("DEF", Meaning::Nothing),
     ("END", Meaning::End),
-    ("BAS", Meaning::Nothing),
+    ("BAS", Meaning::ToolAndFrame),
     ("$BASE", Meaning::WorkOffset),
     ("$NULLFRAME", Meaning::WorkOffsetOff),
-    ("$TOOL", Meaning::Nothing),
+    ("$TOOL", Meaning::ToolFrame),
     ("$VEL.CP", Meaning::Feed),
     ("$ACC.CP", Meaning::Nothing),
     ("$ADVANCE", Meaning::Nothing),
@@ -88,7 +88,7 @@ impl Dialect for Krl {
             optional_stop: setup.text("optional_stop").to_owned(),
             approximate: setup.text("approximate").to_owned(),
             pose: None,
-            tip: None,
+            at: None,
             velocity: String::new(),
         })
     }
@@ -102,7 +102,11 @@ impl Dialect for Krl {
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
-        LANGUAGE.vocabulary(WORDS, &self.optional_stop)
+        let tool = format!("TOOL_DATA[{}]", self.tool).into();
+        let tool = VocabularyWord { word: tool, meaning: Meaning::OwnToolFrame };
+        let mut words = LANGUAGE.vocabulary(WORDS, &self.optional_stop);
+        words.push(tool);
+        words
     }
 
     fn relies_on(&self) -> Vec<String> {
@@ -151,6 +155,12 @@ impl Dialect for Krl {
     }
 }
 
+/// A way of the tip, mm, that may be made of the rounded values of the joints alone: no velocity comes of it.
+const STANDING: f64 = 1e-2;
+
+/// Where a point so far up the tool, mm, goes farther than the tip, the tool turns about its tip.
+const LEVER: f64 = 10.0;
+
 const NO_TIME: &str = "KRL has no feed of a joint move: [control] moves = \"straight\" leads cuts by LIN, and rapid = \"rapid\" all others by PTP";
 
 fn line(text: &str, out: &mut String) {
@@ -187,7 +197,7 @@ impl Krl {
             return;
         }
         line(&format!("PTP {{{}}}", values.join(",")), out);
-        self.tip = tool.map(|tool| tool.tip);
+        self.at = tool;
     }
 
     /// Leads the tool straight to its pose, and evenly what stands beside the arm.
@@ -199,20 +209,26 @@ impl Krl {
         out: &mut String,
     ) -> Result<(), String> {
         let pose = self.pose.take().ok_or(NO_TIME)?;
-        let (Some(to), Some(from)) = (tool.map(|tool| tool.tip), self.tip) else {
+        let (Some(to), Some(from)) = (tool, self.at) else {
             return Err(
                 "where the tool stands is not known, and LIN asks for its velocity".to_owned()
             );
         };
-        let square: f64 = to.iter().zip(from).map(|(to, from)| (to - from) * (to - from)).sum();
+        let apart = |to: [f64; 3], from: [f64; 3]| {
+            let square: f64 = to.iter().zip(from).map(|(to, from)| (to - from) * (to - from)).sum();
+            square.sqrt()
+        };
+        let way = apart(to.tip, from.tip);
         let velocity = match feed {
             // m/s of the tip, mm/min divided by 60,000.
             Feed::PerMinute(feed) => feed / 60_000.0,
-            Feed::InverseTime(feed) => square.sqrt() * feed / 60_000.0,
+            Feed::InverseTime(feed) => way * feed / 60_000.0,
             other => return Err(format!("a robot has no feed like {other}")),
         };
         let velocity = number(velocity, 6);
-        if velocity.bytes().all(|digit| matches!(digit, b'0' | b'.')) {
+        let none = velocity.bytes().all(|digit| matches!(digit, b'0' | b'.'));
+        let turns = way < STANDING && LEVER * apart(to.axis, from.axis) > way;
+        if none || turns && matches!(feed, Feed::InverseTime(_)) {
             return Err("the tool turns about its tip, which the velocity of a tip does not tell: the CL file needs a way of the tip there".to_owned());
         }
         if velocity != self.velocity {
@@ -226,7 +242,7 @@ impl Krl {
             .collect();
         let leaves = if self.approximate.is_empty() { "" } else { " " };
         line(&format!("LIN {{{pose}{beside}}}{leaves}{}", self.approximate), out);
-        self.tip = Some(to);
+        self.at = Some(to);
         Ok(())
     }
 }

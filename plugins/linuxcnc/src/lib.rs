@@ -40,7 +40,7 @@ impl Control for LinuxCnc {
         },
         // Without a register G43 takes that of the tool in the spindle.
         length: Length { by_itself: true, ..Table::ISO.length },
-        // G90.1 and G7 stay in force over M2.
+        // G90.1, G7 and G8 stay in force over M2.
         safe: "G8 G17 G40 G80 G90 G91.1 G94 G97",
         // An offset of G92 shifts everything; G92.2 keeps its numbers.
         cancel: "G92.2",
@@ -68,6 +68,10 @@ impl Control for LinuxCnc {
         ..Table::ISO
     };
 
+    fn table(setup: &Setup<'_>) -> &'static Table {
+        if setup.has_diameters() { DIAMETERS } else { Self::TABLE }
+    }
+
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         no_range(setup, "LinuxCNC takes the sign of a wrapped rotary word for its direction")?;
         let blend = setup.number("blend");
@@ -93,6 +97,10 @@ impl Control for LinuxCnc {
         }
     }
 }
+
+/// Of a lathe whose words of X are diameters: G8 would take them for radii.
+const DIAMETERS: &Table =
+    &Table { safe: "G7 G17 G40 G80 G90 G91.1 G94 G97", ..*<LinuxCnc as Control>::TABLE };
 
 /// A remark that LinuxCNC does not act on, as it does on `(MSG, …)`, `(PROBEOPEN …)` and their like.
 fn passive(text: &str) -> String {

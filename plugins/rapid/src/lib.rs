@@ -78,6 +78,7 @@ const WORDS: &[(&str, Meaning)] = &[
     ("ConfL", Meaning::Nothing),
     ("TPWrite", Meaning::Nothing),
     ("WaitTime", Meaning::Dwell),
+    ("wobj0", Meaning::WorkOffsetOff),
     ("Stop", Meaning::Stop),
 ];
 
@@ -124,7 +125,15 @@ impl Dialect for Rapid {
     }
 
     fn vocabulary(&self) -> Vec<VocabularyWord> {
-        LANGUAGE.vocabulary(WORDS, &self.optional_stop)
+        let mut words = LANGUAGE.vocabulary(WORDS, &self.optional_stop);
+        // `tool0` is the flange.
+        if self.tool != "tool0" {
+            words.push(VocabularyWord {
+                word: self.tool.clone().into(),
+                meaning: Meaning::OwnToolFrame,
+            });
+        }
+        words
     }
 
     fn relies_on(&self) -> Vec<String> {

@@ -121,7 +121,9 @@ impl Siemens {
             Event::Compensate(Compensation::Left { .. } | Compensation::Right { .. })
                 if self.across != "G17" =>
             {
-                return Err("radius compensation lies across Z, and the tool does not".to_owned());
+                return Err(
+                    "radius compensation lies across Z, and the tool does not, or turns".to_owned()
+                );
             }
             Event::Compensate(_) => {
                 self.upright(engine, out);

@@ -69,6 +69,16 @@ struct Siemens {
 impl Control for Siemens {
     const TABLE: &'static Table = &table::TABLE;
 
+    fn table(setup: &Setup<'_>) -> &'static Table {
+        match (setup.turns_in_zx(), setup.has_diameters()) {
+            (true, true) => &table::TURNING_DIAMETERS,
+            (true, false) => &table::TURNING,
+            (false, true) => &table::DIAMETERS,
+            (false, false) if setup.turns_part => &table::RADII,
+            (false, false) => Self::TABLE,
+        }
+    }
+
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
         let place = |name| setup.words.iter().position(|word| word.name == name);
         let linear = match [place("X"), place("Y"), place("Z")] {
@@ -153,6 +163,9 @@ impl Control for Siemens {
 /// The plane across the tool where the words are axis positions. Under a transformation the control turns the length
 /// with the tool.
 fn across(setup: &Setup<'_>) -> &'static str {
+    if setup.turns_in_zx() {
+        return "G18";
+    }
     let lies = |name| setup.words.iter().any(|word| word.name == name && word.depth);
     match (setup.tcp, lies("X"), lies("Y")) {
         (false, true, false) => "G19",

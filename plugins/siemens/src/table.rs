@@ -51,6 +51,28 @@ pub(crate) const TABLE: Table = Table {
     ..Table::ISO
 };
 
+/// Of a lathe of X and Z. The lengths of a turning tool act in X and Z under G18, in Y and X under G17 (NC programming,
+/// 6FC5398-2EP40-0BA0, 12/2019, p. 750).
+pub(crate) const TURNING: Table =
+    Table { safe: "G18 G40 G64 G90 G94 DIAMOF", relies: RELIES_TURNING, ..TABLE };
+
+/// The same with diameters.
+pub(crate) const TURNING_DIAMETERS: Table = Table { safe: "G18 G40 G64 G90 G94 DIAMON", ..TURNING };
+
+/// Of another lathe, whose tools lie otherwise.
+pub(crate) const RADII: Table = Table { safe: "G17 G40 G64 G90 G94 DIAMOF", ..TABLE };
+
+/// The same with diameters.
+pub(crate) const DIAMETERS: Table = Table { safe: "G17 G40 G64 G90 G94 DIAMON", ..TABLE };
+
+/// The setting data that turning relies on.
+const RELIES_TURNING: &[&str] = &[
+    "MD 10760 G53_TOOLCORR: either; SUPA comes with D0",
+    "SD 42940 TOOL_LENGTH_CONST = 0 or 18: lengths of turning tools act in X and Z",
+    "MD 20100 DIAMETER_AX_DEF names X",
+    "SUPA counts from the machine's zero",
+];
+
 /// The parameters and setting data that the program relies on.
 const RELIES: &[&str] = &[
     "MD 10760 G53_TOOLCORR: either; SUPA comes with D0",

@@ -156,7 +156,7 @@ const WORDS: &[(&str, Meaning)] = &[
     ("G972", M::SurfaceSpeedOff),
     ("G973", M::FixedSpeedPerRevolution),
     ("DIAMON", M::Diameter),
-    ("DIAM90", M::Diameter),
+    ("DIAM90", M::DiameterOfPositions),
     ("DIAMOF", M::DiameterOff),
     ("M3", M::SpindleClockwise),
     ("M4", M::SpindleCounterClockwise),

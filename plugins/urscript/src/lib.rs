@@ -61,7 +61,7 @@ const WORDS: &[(&str, Meaning)] = &[
     ("get_actual_joint_positions", Meaning::JointsNow),
     ("textmsg", Meaning::Nothing),
     ("set_payload", Meaning::Nothing),
-    ("set_tcp", Meaning::Nothing),
+    ("set_tcp", Meaning::ToolFrame),
     ("sleep", Meaning::Dwell),
     ("popup", Meaning::Stop),
 ];

@@ -377,6 +377,9 @@ impl ControlState {
         if words.present & self.axes.mask != 0 {
             self.relies_on(ModalGroup::Units);
             self.relies_on(ModalGroup::Distance);
+            if words.present & bit(b'X') != 0 {
+                self.relies_on(ModalGroup::Diameter);
+            }
         }
         self.alone_on_face(asked)?;
         if let Some((code, meaning)) = asked.frame {
@@ -448,6 +451,7 @@ impl ControlState {
         }
         self.begins();
         self.relies_on_nothing_left();
+        self.relies_on_turning_plane();
         if kind == MotionKind::Feed {
             self.relies_on(ModalGroup::Feed);
         } else if words.present & bit(b'F') != 0 {
@@ -565,6 +569,8 @@ impl ControlState {
             } else if let 23..=25 = letter {
                 let row = letter - 23;
                 let from = if way { point[row] } else { 0.0 };
+                let radius = row == 0 && way && self.modal.ways_are_radii;
+                let value = if radius { 2.0 * value } else { value };
                 target.point[row] = Some(from + value * unit);
             } else {
                 let from = if way { self.at.joints[place] } else { self.zero[place] };

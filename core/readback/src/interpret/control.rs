@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
-use post_machine::axis_words::unit_length;
-use post_machine::description::{Machine, OutputUnits};
+use post_machine::axis_words::{is_diameter, unit_length};
+use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Joints, MAX_AXES, Turns};
@@ -16,6 +16,7 @@ use super::ReadReport;
 use super::block_words::bit;
 use super::face::FaceWords;
 use super::frame::{CoordinateFrame, FrameStack};
+use super::relied::ModalGroup;
 use super::state::{
     ArcPlane, AxisLetters, ControlState, FeedMeaning, ModalState, MotionMode, MountedHead,
     OrientationMode, ReturnTo,
@@ -125,7 +126,7 @@ impl ControlState {
             wrap_words: WrapWords::of(machine, &axes),
             wrap_outside: None,
             axes,
-            modal: ModalState::new(lexicon, machine.control.units),
+            modal: ModalState::new(lexicon, machine),
             frames: FrameStack::default(),
             work: None,
             offsets_told: false,
@@ -134,6 +135,8 @@ impl ControlState {
             cycles: super::cycles::CycleState::default(),
             spline: None,
             joint_variable: super::statements::JointVariable::default(),
+            robot_frames: super::robot_frames::RobotFrames::default(),
+            lengths_by_plane: lexicon.tools_have_edges() && turns_in_zx(machine),
             path_velocity: None,
             path: super::conversational::PathMemory::default(),
             state: MachineState {
@@ -396,15 +399,19 @@ impl ControlState {
 }
 
 impl ModalState {
-    fn new(lexicon: &Lexicon, units: OutputUnits) -> Self {
+    fn new(lexicon: &Lexicon, machine: &Machine) -> Self {
         let named = lexicon.language() == Language::Names;
+        // A mill has radii, and no program of it says so.
+        let turns = machine.spindle.surface_speed
+            || (0..machine.axes.len()).any(|place| is_diameter(machine, place));
+        let diameters = if turns { 0 } else { ModalGroup::Diameter.bit() };
         Self {
             motion: if named { MotionMode::Linear } else { MotionMode::None },
-            unset: lexicon.modes(),
+            unset: lexicon.modes() & !diameters,
             plane: ArcPlane::Xy,
             incremental: false,
             centres_absolute: false,
-            unit: unit_length(units),
+            unit: unit_length(machine.control.units),
             feed_mode: FeedMeaning::PerMinute,
             feed: None,
             speed: 0.0,
@@ -422,8 +429,16 @@ impl ModalState {
             rigid_taps: false,
             machine: false,
             tapped: false,
+            ways_are_radii: false,
         }
     }
+}
+
+/// Tools are turned with in X and Z, the only axes that there are.
+fn turns_in_zx(machine: &Machine) -> bool {
+    let mut axes = machine.axes.iter();
+    machine.spindle.surface_speed
+        && axes.all(|axis| !axis.joint.rotary && matches!(axis.name.as_str(), "X" | "Z"))
 }
 
 /// Where the axes stand before a program says so: at the drawing's zeros, index axes where they start.

@@ -35,6 +35,10 @@ impl ControlState {
                 self.end_face()?;
                 self.end_wrap()?;
             }
+            Meaning::Diameter | Meaning::DiameterOfPositions | Meaning::DiameterOff => {
+                self.sets_group(meaning);
+                return self.count_diameters(meaning);
+            }
             Meaning::SurfaceSpeed => {
                 if let Some(letter) = code.and_then(|code| self.lexicon.value_letter(code)) {
                     // Without it there is no limit.
@@ -208,7 +212,6 @@ fn is_not_followed(meaning: Meaning) -> bool {
             | Meaning::Scale
             | Meaning::Mirror
             | Meaning::Polar
-            | Meaning::Diameter
             | Meaning::LengthNegative
             | Meaning::LengthAdded
             | Meaning::LengthAlongTool

@@ -13,11 +13,11 @@
 //! | `go`, `arcs`, `splines`, `machine_moves` | from words to axis values, tip and tool axis |
 //! | `face` | polar interpolation by the control |
 //! | `feed`, `tools` | time, tool lengths |
-//! | `relied` | what the program relies on and does not say |
+//! | `relied` | what the program relies on and does not say, or says otherwise than the machine file |
 //! | `frame` | frames within one another |
 //! | `flow`, `astray`, `expression`, `variables` | what leads the program elsewhere, and numbers that are worked out |
 //! | `cycles`, `planes`, `frames`, `conversational` | cycles, tilted planes, shifts; Heidenhain's blocks |
-//! | `statements` | joint moves of robots |
+//! | `statements`, `robot_frames` | moves of robots, and the tool and frame that they go by |
 
 mod along;
 mod arcs;
@@ -44,6 +44,7 @@ mod mode_words;
 mod names;
 pub(crate) mod planes;
 mod relied;
+mod robot_frames;
 mod run;
 mod spindle;
 mod spindle_request;
@@ -65,7 +66,7 @@ use crate::lexicon::Lexicon;
 use crate::{BlockEffect, MachineState, Offsets, ProgramEvent};
 use block_words::BlockWords;
 use flow::ProgramFlow;
-pub use relied::ModalGroup;
+pub use relied::{ContraryMode, ModalGroup};
 use run::MotionRun;
 use state::ControlState;
 
@@ -107,6 +108,8 @@ pub struct ReadReport {
     pub cycle_cut_off: Option<u64>,
     /// Modes that the program has not set, and the lines of the first words whose meaning hangs on them.
     pub relied: Vec<(u64, ModalGroup)>,
+    /// Modes that stand otherwise than the machine file has them where a motion depends on them.
+    pub contrary: Vec<ContraryMode>,
     /// Line of the first tap whose cycle no word makes rigid, and how many there are.
     pub bare_taps: Option<(u64, u64)>,
     /// The line at which a tool is changed or led to the part first, if these axes, which the machine file retracts, were

@@ -1,8 +1,10 @@
-//! What a program relies on and does not say: modes that hold from whatever ran before, and that the tool stands clear.
+//! What a program relies on: modes that it does not say and that hold from whatever ran before, or that it sets otherwise
+//! than the machine file has them, and that the tool stands clear.
 
+use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Meaning, VocabularyWord};
 
-use super::state::ControlState;
+use super::state::{ArcPlane, ControlState};
 
 /// Modes of which one always holds: a program that sets none has that of the program before, or of the control's start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,10 +23,32 @@ pub enum ModalGroup {
     Cycle,
     /// A tilted plane: one that is left on turns all words.
     TiltedPlane,
+    /// Diameters or radii: the worth of the words of X.
+    Diameter,
+    /// The frame of the tool that a robot leads straight.
+    ToolFrame,
+    /// What the poses of a robot count from.
+    BaseFrame,
 }
 
+/// A mode that stands otherwise where a motion depends on it than the machine file has it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ContraryMode {
+    /// Line of the motion.
+    pub line: u64,
+    /// Which mode.
+    pub group: ModalGroup,
+    /// What the program has set.
+    pub has: String,
+    /// What it must be; none where the dialect names nothing.
+    pub wants: Option<String>,
+}
+
+/// Contrary modes that are kept.
+const MOST_CONTRARY: usize = 50;
+
 /// Bits of the modes that may have been left on.
-const LEFT_ON: u8 =
+const LEFT_ON: u16 =
     ModalGroup::Compensation.bit() | ModalGroup::Cycle.bit() | ModalGroup::TiltedPlane.bit();
 
 impl ModalGroup {
@@ -48,6 +72,11 @@ impl ModalGroup {
             Meaning::CompensationOff => Self::Compensation,
             Meaning::CycleOff => Self::Cycle,
             Meaning::TiltedPlaneOff => Self::TiltedPlane,
+            Meaning::Diameter | Meaning::DiameterOfPositions | Meaning::DiameterOff => {
+                Self::Diameter
+            }
+            Meaning::ToolFrame | Meaning::OwnToolFrame => Self::ToolFrame,
+            Meaning::WorkOffset | Meaning::WorkOffsetOff => Self::BaseFrame,
             _ => return None,
         })
     }
@@ -62,16 +91,31 @@ impl ModalGroup {
             Self::Compensation => "radius compensation off",
             Self::Cycle => "cycles off",
             Self::TiltedPlane => "tilted planes off",
+            Self::Diameter => "diameters or radii",
+            Self::ToolFrame => "the frame of the tool",
+            Self::BaseFrame => "the frame of poses",
         }
     }
 
     /// Its bit in a set of modes.
-    pub(crate) const fn bit(self) -> u8 {
+    pub(crate) const fn bit(self) -> u16 {
         1 << self as u8
     }
 
+    /// The bits of the frames that a robot's program must set itself: those that it has a word for, and another of what
+    /// they must be.
+    pub(crate) fn of_robots(words: &[VocabularyWord]) -> u16 {
+        let has = |meaning| words.iter().any(|word| word.meaning == meaning);
+        let [tool, base] = [
+            has(Meaning::ToolFrame) && has(Meaning::OwnToolFrame),
+            has(Meaning::WorkOffset) && has(Meaning::WorkOffsetOff),
+        ];
+        let bits = [(tool, Self::ToolFrame), (base, Self::BaseFrame)].into_iter();
+        bits.filter(|(is, _)| *is).fold(0, |bits, (_, group)| bits | group.bit())
+    }
+
     /// The bits of the modes that a dialect has words for: what its control has fixed, no program can set.
-    pub(crate) fn named(words: &[VocabularyWord]) -> u8 {
+    pub(crate) fn named(words: &[VocabularyWord]) -> u16 {
         let groups = words.iter().filter_map(|word| Self::of(word.meaning));
         groups.fold(0, |bits, group| bits | group.bit())
     }
@@ -102,6 +146,56 @@ impl ControlState {
         }
     }
 
+    /// What the block means hangs on a mode that the program has set to `has`, and the machine file has otherwise.
+    #[cold]
+    pub(super) fn stands_otherwise(&mut self, group: ModalGroup, has: &str, wants: Option<String>) {
+        let contrary = &mut self.report.contrary;
+        let told = contrary.iter().any(|other| other.group == group && other.has == has);
+        if !told && contrary.len() < MOST_CONTRARY {
+            let has = has.to_owned();
+            contrary.push(ContraryMode { line: self.line, group, has, wants });
+        }
+    }
+
+    /// The lengths of a turning tool act in X and Z under G18, and in Y and X under G17 (SINUMERIK ONE, NC programming,
+    /// 6FC5398-2EP40-0BA0, 12/2019, p. 750).
+    #[inline]
+    pub(super) fn relies_on_turning_plane(&mut self) {
+        if !self.lengths_by_plane {
+            return;
+        }
+        if self.modal.unset & ModalGroup::Plane.bit() != 0 {
+            self.relies_on(ModalGroup::Plane);
+            // As lathes are set up.
+            self.modal.plane = ArcPlane::Zx;
+        }
+        let has = match self.modal.plane {
+            ArcPlane::Zx => return,
+            ArcPlane::Xy => "G17",
+            ArcPlane::Yz => "G19",
+        };
+        self.stands_otherwise(ModalGroup::Plane, has, Some("G18".to_owned()));
+    }
+
+    /// Words of X are diameters or radii from here on, whatever [word.X] of the machine file has.
+    pub(super) fn count_diameters(&mut self, meaning: Meaning) -> Result<(), Box<Diagnostic>> {
+        let Some(place) = self.axes.cartesian[0] else {
+            return Ok(());
+        };
+        let factor = 1.0 / self.axes.scale[place];
+        let coupled = self.machine.word_map.as_ref().is_some_and(|map| map.is_coupled(place));
+        let known = [1.0, 2.0].iter().any(|known| libm::fabs(libm::fabs(factor) - known) < 1e-9);
+        let diameter = meaning != Meaning::DiameterOff;
+        if self.face.is_some() || self.wrap_outside.is_some() || coupled || !known {
+            let message = "words of X become diameters or radii, and what they are here is told by the machine file alone";
+            return Err(self.refuse("nc-word", message));
+        }
+        let value = if diameter { 0.5 } else { 1.0 };
+        self.axes.scale[place] = libm::copysign(value, factor);
+        self.modal.ways_are_radii = meaning == Meaning::DiameterOfPositions;
+        Ok(())
+    }
+
     /// The tool is led to the part by words: what was left on then would lead it elsewhere.
     #[inline]
     pub(super) fn relies_on_nothing_left(&mut self) {
@@ -116,7 +210,7 @@ impl ControlState {
     pub(super) fn has_begun(&self) -> bool {
         let plane = if self.state.compensation != 0 { ModalGroup::Plane.bit() } else { 0 };
         let moves = ModalGroup::Units.bit() | ModalGroup::Distance.bit() | ModalGroup::Feed.bit();
-        self.begun && self.modal.unset & (moves | plane | LEFT_ON) == 0
+        self.begun && self.modal.unset & (moves | plane | ModalGroup::Diameter.bit() | LEFT_ON) == 0
     }
 
     #[cold]

@@ -80,6 +80,7 @@ impl ControlState {
             && self.state.wrap.is_none()
             && self.axes.are_cartesian()
             && self.machine.word_map.is_none()
+            && self.axes.scale == [1.0; MAX_AXES]
             && self.machine.along.is_none()
             && self.state.solver.chain().edge().is_none();
         let counted = match self.tip_words() {

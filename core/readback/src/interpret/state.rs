@@ -69,6 +69,10 @@ pub(super) struct ControlState {
     pub spline: Option<Box<OpenSpline>>,
     /// The variable of joint positions that a robot's program has filled last.
     pub joint_variable: super::statements::JointVariable,
+    /// Tool and frame that a robot's straight moves go by.
+    pub robot_frames: super::robot_frames::RobotFrames,
+    /// Lengths of tools act by the plane, and those of a turning tool in X and Z under G18 alone.
+    pub lengths_by_plane: bool,
     /// Velocity of the tip where a robot's control leads it straight, m/s.
     pub path_velocity: Option<f64>,
     /// What conversational path functions remember.
@@ -201,7 +205,9 @@ pub(super) struct ModalState {
     /// Positions are machine coordinates until a word ends that: `#MCS ON`.
     pub machine: bool,
     /// Bits of the modes that the program has neither set nor relied on ([`super::ModalGroup`]).
-    pub unset: u8,
+    pub unset: u16,
+    /// Ways of X are radii while its positions are diameters: DIAM90.
+    pub ways_are_radii: bool,
     /// A rigid tap was made and no word has turned the spindle since: it stands when the cycle is over.
     pub tapped: bool,
 }

@@ -13,6 +13,7 @@ use post_machine::kinematics::Pose;
 use post_plugin::{ARM_AXES, ARM_JOINTS, Meaning, arm_axis};
 
 use super::go::MotionTarget;
+use super::relied::ModalGroup;
 use super::spindle_request::SpindleRequest;
 use super::state::{ControlState, FeedMeaning};
 use crate::lexicon::WordMeaning;
@@ -25,6 +26,10 @@ const NO_AXIS: f64 = 8.9e9;
 
 /// A pose that the joints miss by more than this is not reached, mm, its frame on the arm of the search.
 const STANDS: f64 = 1e-6;
+
+/// A quaternion is as much longer or shorter than 1 by its printed places; RAPID wants it to be 1 (RAPID reference manual,
+/// orient: "the orientation must be normalised").
+const NORMAL: f64 = 1e-3;
 
 /// A variable that was filled with where the joints stand, and what was set of it since.
 #[derive(Clone, Debug, Default)]
@@ -107,6 +112,8 @@ fn obey(control: &mut ControlState, name: &str, meaning: Meaning, terms: &[NcTer
     };
     match meaning {
         Meaning::Nothing => {}
+        Meaning::ToolFrame => control.set_robot_frame(ModalGroup::ToolFrame, terms),
+        Meaning::ToolAndFrame => return control.set_robot_frames(terms),
         Meaning::JointMove => return joint_move(control, name, terms),
         Meaning::StraightMove => return straight_move(control, name, terms),
         Meaning::PoseMove => {
@@ -194,11 +201,12 @@ fn assign(control: &mut ControlState, left: &[NcTerm], right: &[NcTerm]) -> Answ
             control.path_velocity = angle(right, false).filter(|velocity| *velocity > 0.0);
             Ok(())
         }
-        // `$BASE=$NULLFRAME`.
-        WordMeaning::Means(Meaning::WorkOffset)
-            if matches!(right, [NcTerm::Name(to)]
-                if control.lexicon.name(to) == WordMeaning::Means(Meaning::WorkOffsetOff)) =>
-        {
+        WordMeaning::Means(Meaning::ToolFrame) => {
+            control.set_robot_frame(ModalGroup::ToolFrame, right);
+            Ok(())
+        }
+        WordMeaning::Means(Meaning::WorkOffset) => {
+            control.set_robot_frame(ModalGroup::BaseFrame, right);
             Ok(())
         }
         _ => {
@@ -349,7 +357,7 @@ fn pace(
                 pace = speed_of(speed, switches).ok_or_else(|| not_known(control, name, speed))?;
             }
             [NcTerm::Name(zone)] if place == 1 => leaves |= zone != "FINE",
-            // The tool, and the work object: joints do not ask for them.
+            // The tool, and the work object: joints do not ask for them, straight moves look at them elsewhere.
             [NcTerm::Name(_), ..] if place == 2 => {}
             _ => return Err(not_known(control, name, "an argument")),
         }
@@ -414,6 +422,18 @@ fn straight_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> An
     let Some(PoseTarget { pose, beside }) = target else {
         return Err(not_read(control));
     };
+    if let [NcTerm::Group(b'[', inside), ..] = first {
+        let length = quaternion_length(inside);
+        if length.is_some_and(|length| libm::fabs(length - 1.0) > NORMAL) {
+            let message = format!(
+                "the quaternion of {name} is {:.4} long, and the control takes none that is not 1 long",
+                length.unwrap_or_default()
+            );
+            return Err(control.refuse("nc-statement", message));
+        }
+        control.move_names_frames(name, rest.get(2))?;
+    }
+    control.relies_on_robot_frames();
     let pace = match (pace(control, name, behind, rest)?, control.path_velocity) {
         (Pace::Rapid, Some(velocity)) => Pace::Tip(60.0 * 1000.0 * velocity),
         (said, _) => said,
@@ -503,6 +523,17 @@ fn target_pose(inside: &[NcTerm]) -> Option<PoseTarget> {
             .map(|(place, value)| JointPosition { place: ARM_JOINTS + place, value })
             .collect(),
     })
+}
+
+/// How long the quaternion of a target is.
+fn quaternion_length(inside: &[NcTerm]) -> Option<f64> {
+    match parts(inside).get(1)? {
+        [NcTerm::Group(b'[', turn)] => {
+            let [w, i, j, k] = numbers(turn)?;
+            Some(Quaternion::new(w, i, j, k).norm())
+        }
+        _ => None,
+    }
 }
 
 /// `{X 800,Y 0,Z 700,A 0,B 90,C 0,E1 1500}`: mm, and degrees about Z, then about the new Y, then about the new X.

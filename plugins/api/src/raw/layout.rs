@@ -53,6 +53,7 @@ pub const TABLES: &[Layout] = layouts! {
     PostSetup as "PostSetup" {
         size program machine units tcp words words_len options options_len
         cl_file tip_tolerance axis_tolerance rapid_tolerance ahead moves tools tools_len least largest time
+        turns_part diameters
     }
     PostFormat as "PostFormat" {
         size words feed inverse_time feed_per_revolution words_len extension writes most_inverse_time

@@ -74,7 +74,15 @@ pub fn with_setup<R>(setup: &Setup<'_>, take: impl FnOnce(&PostSetup) -> R) -> R
         least,
         largest,
         time: or_nan(ahead.and_then(|ahead| ahead.time)),
+        turns_part: setup.turns_part.into(),
+        diameters: diameters(setup.words),
     })
+}
+
+/// The bits of the words that are diameters.
+fn diameters(words: &[AxisWord<'_>]) -> u32 {
+    let places = words.iter().take(32).enumerate().filter(|(_, word)| word.diameter);
+    places.fold(0, |bits, (place, _)| bits | 1 << place)
 }
 
 impl PostSetup {
@@ -100,6 +108,8 @@ impl PostSetup {
         least: [0.0; 3],
         largest: [0.0; 3],
         time: f64::NAN,
+        turns_part: 0,
+        diameters: 0,
     };
 
     /// Hands the setup at `this` to `take` in its safe form; none if a text is not valid or the units are not
@@ -120,7 +130,7 @@ impl PostSetup {
         }
         let raw_words = unsafe { slice(raw.words, raw.words_len) };
         let mut words = Vec::with_capacity(raw_words.len());
-        for word in raw_words {
+        for (place, word) in raw_words.iter().enumerate() {
             words.push(AxisWord {
                 name: unsafe { word.name.get() }?,
                 rotary: word.rotary != 0,
@@ -128,6 +138,7 @@ impl PostSetup {
                 signed: word.rotary == 3,
                 depth: word.depth != 0,
                 carries_part: word.carries_part != 0,
+                diameter: place < 32 && raw.diameters >> place & 1 == 1,
                 travel: (!word.least.is_nan()).then_some([word.least, word.largest]),
             });
         }
@@ -149,6 +160,7 @@ impl PostSetup {
             machine: unsafe { raw.machine.get() }?,
             units: Units::of(raw.units)?,
             tcp: raw.tcp != 0,
+            turns_part: raw.turns_part != 0,
             words: &words,
             options: &options,
             cl_file: unsafe { raw.cl_file.get() }?,

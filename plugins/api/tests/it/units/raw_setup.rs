@@ -4,6 +4,7 @@ use post_plugin::{Value, *};
 #[test]
 fn a_setup_comes_back_as_it_went_and_shorter_from_an_earlier_host() {
     let words = [
+        AxisWord { name: "X", diameter: true, ..AxisWord::default() },
         AxisWord { name: "Z", depth: true, travel: Some([-5.0, 300.0]), ..AxisWord::default() },
         AxisWord {
             name: "C",
@@ -25,6 +26,7 @@ fn a_setup_comes_back_as_it_went_and_shorter_from_an_earlier_host() {
         machine: "m",
         units: Units::Inch,
         tcp: true,
+        turns_part: true,
         words: &words,
         options: &[("a", Value::Integer(1))],
         cl_file: "p.cls",
@@ -46,10 +48,11 @@ fn a_setup_comes_back_as_it_went_and_shorter_from_an_earlier_host() {
         // SAFETY: it has no more than it says.
         let back = unsafe {
             PostSetup::with(&shorter, |setup| {
-                assert_eq!((setup.program, setup.words.len()), ("p", 2));
-                (setup.cl_file.is_empty(), setup.accuracy, setup.ahead.is_none())
+                assert_eq!((setup.program, setup.words.len()), ("p", 3));
+                let told = setup.turns_part || setup.has_diameters();
+                (setup.cl_file.is_empty(), setup.accuracy, setup.ahead.is_none(), told)
             })
         };
-        assert_eq!(back, Some((true, None, true)));
+        assert_eq!(back, Some((true, None, true, false)));
     });
 }

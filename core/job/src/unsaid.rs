@@ -130,7 +130,7 @@ impl Unsaid<'_> {
         self.report.contrary.iter().map(|contrary| {
             let ContraryMode { line, group, has, wants } = contrary;
             let name = group.name();
-            let wanted = wants.as_deref().unwrap_or("what the program does not set");
+            let wanted = wants.as_deref().unwrap_or("the one that the control is set up with");
             let message = match group {
                 ModalGroup::Plane => format!(
                     "the {name} is {has}, and the lengths of a turning tool act in X and Z under {wanted} alone"

@@ -67,6 +67,25 @@ class Machine:
         edge: _Floats | None,
         cut: NDArray[np.bool_],
     ) -> _Floats: ...
+    def read(
+        self, program: str, csv: str | None, cl: str | None, options: list[tuple[str, _Option]]
+    ) -> tuple[str, list[_Told]]: ...
+    def verify(
+        self,
+        program: str,
+        against: str,
+        axis_tolerance: float | None,
+        posted: bool,
+        planned: bool,
+        clearance: bool,
+        options: list[tuple[str, _Option]],
+    ) -> tuple[str, list[_Told]]: ...
+    def predict(
+        self, program: str, against: str | None, period: float | None, options: list[tuple[str, _Option]]
+    ) -> tuple[str, list[_Told]]: ...
+    def lint(
+        self, program: str, ignore: list[str], strict: bool, options: list[tuple[str, _Option]]
+    ) -> tuple[str, list[_Told]]: ...
     def deviation(self, q0: _Floats, q1: _Floats, shares: _Floats) -> tuple[_Floats, _Floats]: ...
     def post(
         self,

@@ -5,24 +5,47 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypedDict
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from post import _native
-from post.made import Job
+from post import _native, arguments
+from post.arguments import (
+    Floats,
+    Path,
+    Value,
+    along,
+    floats,
+    number_if_any,
+    path,
+    path_if_any,
+    paths,
+    point,
+    rows,
+    settings,
+    texts,
+    told,
+)
+from post.made import Found, Job, found
+from post.points import PointFile
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-Floats = NDArray[np.float64]
-Path = str | os.PathLike[str]
-Value = str | bool | int | float | np.integer[Any] | np.floating[Any] | Sequence[float]
-"""What a setting can be: as in a machine file; a text may be an expression."""
+Loading = tuple[
+    str,
+    list[tuple[str, str]],
+    float | None,
+    tuple[float, float, float] | None,
+    float | None,
+    list[str],
+    list[str],
+]
+"""What a machine is loaded by: arguments of :meth:`Machine.load`."""
 
 
-class Options(TypedDict, total=False):
+class MakingOptions(TypedDict, total=False):
     """Options of a job, those of the command: ``post --help`` tells what they mean."""
 
     then: Sequence[str] | None
@@ -34,7 +57,6 @@ class Options(TypedDict, total=False):
     tool: int | None
     tool_from_cutter: bool
     spindle: float | Literal["off"] | None
-    feed: float | None
     tolerance: float | None
     tcp: Literal["control", "post"] | None
     dialect: str | None
@@ -47,6 +69,27 @@ class Options(TypedDict, total=False):
     plan_rounds: int | None
     jobs: int | None
     trust_model: bool
+
+
+class Options(MakingOptions, total=False):
+    """The same with the feed of a CL file that names none."""
+
+    feed: float | None
+
+
+class ReadOptions(TypedDict, total=False):
+    """Options of what reads an NC program, those of the command: ``post read --help`` tells what they mean."""
+
+    offsets: Path | None
+    tools: Path | None
+    dialect: str | None
+    most_blocks: int | None
+
+
+class AgainstOptions(Options, total=False):
+    """Options of what holds an NC program against a CL file: ``post verify --help`` tells what they mean."""
+
+    offsets: Path | None
 
 
 @dataclass(frozen=True)
@@ -63,10 +106,12 @@ class Axis:
 
 
 class Machine:
-    """A machine with its settings and a tool in it; :meth:`load` makes one. It never changes, and threads may share it."""
+    """A machine with its settings and a tool in it; :meth:`load` makes one. It never changes, and threads may share it.
+    Pickled it is what it was loaded by: another process loads it again, from the file of that name."""
 
-    def __init__(self, native: _native.Machine) -> None:
+    def __init__(self, native: _native.Machine, loading: Loading) -> None:
         self._native = native
+        self._loading = loading
         self._axes = tuple(
             Axis(name, rotary, carries_part, unit, travel)
             for name, rotary, carries_part, unit, travel in native.axes()
@@ -94,19 +139,29 @@ class Machine:
 
         Raises :class:`PostError` where the command would refuse.
         """
-        if tool_length is not None and not 0 <= tool_length < float("inf"):
+        length = number_if_any("tool_length", tool_length)
+        if length is not None and not 0 <= length < float("inf"):
             raise ValueError(f"tool_length is {tool_length}, not a length from 0 up")
-        return cls(
-            _native.Machine(
-                os.fspath(name),
-                [(key, written(value)) for key, value in (set or {}).items()],
-                None if tool_length is None else float(tool_length),
-                None if mount is None else point(mount),
-                None if turn is None else float(turn),
-                [os.fspath(folder) for folder in machines],
-                [os.fspath(folder) for folder in plugins],
-            )
+        return cls._loaded(
+            path("name", name),
+            settings("set", set),
+            length,
+            None if mount is None else point("mount", mount),
+            number_if_any("turn", turn),
+            paths("machines", machines),
+            paths("plugins", plugins),
         )
+
+    @classmethod
+    def _loaded(cls, *loading: Unpack[Loading]) -> Machine:
+        return cls(_native.Machine(*loading), loading)
+
+    def __reduce__(self) -> tuple[Callable[..., Machine], tuple[object, ...]]:
+        name, *more = self._loading
+        # Another process may stand in another folder.
+        name = os.path.abspath(name) if os.path.isfile(name) else name
+        folders = [[os.path.abspath(folder) for folder in given] for given in self._loading[-2:]]
+        return Machine._loaded, (name, *more[:-2], *folders)
 
     @property
     def name(self) -> str:
@@ -174,20 +229,30 @@ class Machine:
         begin, end = self._values("q0", q0), self._values("q1", q1)
         if begin.shape != end.shape:
             raise ValueError(f"q0 has the shape {begin.shape}, q1 {end.shape}")
-        shares = np.array(np.atleast_1d(np.asarray(t, dtype=np.float64)), order="C", copy=True)
+        shares = np.atleast_1d(floats("t", t))
         if shares.ndim != 1:
             raise ValueError(f"t has the shape {shares.shape}, not (m,)")
         return self._native.deviation(begin, end, shares)
 
     def post(
         self,
-        path: Path,
+        path: Path | None = None,
         *,
+        points: ArrayLike | None = None,
+        axes: ArrayLike = (0, 0, 1),
+        feed: ArrayLike | None = None,
+        cut: ArrayLike | None = None,
         output: Path | None = None,
         blocks: bool = True,
-        **options: Unpack[Options],
+        **options: Unpack[MakingOptions],
     ) -> Job:
         """Posts a CL file as the command does: the same program, letter for letter.
+
+        In the place of the file ``points`` (n, 3) are tips, mm, part frame, with their tool ``axes`` (n, 3) or one for all,
+        and ``feed`` (n,), mm/min, by which the tool comes to each, or one for all. ``cut`` (n,) says of each whether it comes
+        cutting, or in a rapid; without it only the first is come to in a rapid. They become the lines of a CL file, to the
+        last digit, which is kept as long as the job is: lines in messages are lines of that. ``tool=1, spindle=6000`` say
+        the rest.
 
         ``output`` writes the program there, whole or not at all; without it nothing is written. ``blocks=False`` keeps no
         columns of the blocks, some 250 bytes each. Options are those of the command, underscores for hyphens:
@@ -195,14 +260,101 @@ class Machine:
 
         Raises :class:`PostError` where the command would refuse.
         """
-        where = None if output is None else os.fspath(output)
-        native = self._native.post(os.fspath(path), where, told(options), blocks)
+        if (path is None) == (points is None):
+            raise TypeError("post takes either a path or points")
+        listed = None if points is None else PointFile(points, axes, feed, cut)
+        all_options: dict[str, object] = {**options}
+        if listed is None:
+            all_options["feed"] = feed
+        name = listed.path if listed else arguments.path("path", path)
+        where = path_if_any("output", output)
+        native = self._native.post(name, where, told(all_options), blocks)
 
         def planned(rounds: int | None) -> Job:
-            more: Options = {**options, "plan": True, "plan_rounds": rounds}
-            return self.post(path, blocks=blocks, **more)
+            more = {**all_options, "plan": True, "plan_rounds": rounds}
+            return Job(self._native.post(name, None, told(more), blocks), planned, listed)
 
-        return Job(native, planned)
+        return Job(native, planned, listed)
+
+    def read(
+        self,
+        program: Path,
+        *,
+        csv: Path | None = None,
+        cl: Path | None = None,
+        **options: Unpack[ReadOptions],
+    ) -> Found:
+        """Reads any NC program as its control does, as ``post read``: ``found.summary`` has blocks, motions, times, the least
+        and largest value of each axis, tools, and words that are not known. ``csv`` writes the table of its motions there,
+        ``cl`` its path as a CL file.
+
+        Raises :class:`PostError` if a block is not understood, or an axis leaves its travel.
+        """
+        csv, cl = path_if_any("csv", csv), path_if_any("cl", cl)
+        return found(self._native.read(path("program", program), csv, cl, told(options)))
+
+    def verify(
+        self,
+        program: Path,
+        against: Path,
+        *,
+        axis_tolerance: float | None = None,
+        posted: bool = False,
+        planned: bool = False,
+        clearance: bool = False,
+        **options: Unpack[AgainstOptions],
+    ) -> Found:
+        """Holds any NC program against the CL file ``against``, as ``post verify``. ``axis_tolerance`` is how far the tool
+        axis may stray in a cut, degrees; ``posted`` says that the program was posted for this machine file, ``planned``
+        that its feed was planned, and ``clearance`` proves besides that nothing hits anything.
+
+        Raises :class:`PostError` if it does not do what the CL file asks for.
+        """
+        return found(
+            self._native.verify(
+                path("program", program),
+                path("against", against),
+                number_if_any("axis_tolerance", axis_tolerance),
+                bool(posted),
+                bool(planned),
+                bool(clearance),
+                told(options),
+            )
+        )
+
+    def predict(
+        self,
+        program: Path,
+        against: Path | None = None,
+        *,
+        period: float | None = None,
+        **options: Unpack[AgainstOptions],
+    ) -> Found:
+        """Predicts what any NC program does on this machine, as ``post predict``: cycle time, true feed, and how far the tool
+        strays; ``against`` is the CL file that it was made from, ``period`` the time between set-points, s, over that of
+        the machine file.
+
+        Raises :class:`PostError` if a block is not understood.
+        """
+        against = path_if_any("against", against)
+        seconds = number_if_any("period", period)
+        return found(self._native.predict(path("program", program), against, seconds, told(options)))
+
+    def lint(
+        self,
+        program: Path,
+        *,
+        ignore: Iterable[str] = (),
+        strict: bool = False,
+        **options: Unpack[ReadOptions],
+    ) -> Found:
+        """Looks over any NC program, as ``post lint``: ``found.warnings`` are what may be wrong. Findings of the codes in
+        ``ignore`` are only counted.
+
+        Raises :class:`PostError` if something is wrong, or, where ``strict``, may be; its ``diagnostics`` are all findings.
+        """
+        codes = texts("ignore", ignore)
+        return found(self._native.lint(path("program", program), codes, bool(strict), told(options)))
 
     def _values(self, name: str, q: ArrayLike) -> Floats:
         return rows(name, q, len(self.axes))
@@ -230,7 +382,7 @@ def job(
 
     Raises :class:`PostError` with the first program that the command would refuse.
     """
-    name = os.fspath(path)
+    name = arguments.path("path", path)
     natives = _native.job(name, write, told(options), blocks)
 
     def planning(number: int) -> Callable[[int | None], Job]:
@@ -241,61 +393,3 @@ def job(
         return planned
 
     return [Job(native, planning(number)) for number, native in enumerate(natives)]
-
-
-def rows(name: str, values: ArrayLike, width: int) -> Floats:
-    """An array of float64 in one piece, one row a point; a single row is one point."""
-    # Copied: another thread may write to the caller's while Rust reads.
-    array = np.array(values, dtype=np.float64, order="C", copy=True)
-    if array.ndim == 1 and array.shape == (width,):
-        array = array.reshape(1, width)
-    if array.ndim != 2 or array.shape[1] != width:
-        raise ValueError(f"{name} has the shape {np.shape(values)}, not (n, {width})")
-    return array
-
-
-def along(name: str, values: ArrayLike, tips: Floats) -> Floats:
-    """Directions of points; a single one is that of all."""
-    array = rows(name, values, 3)
-    if len(array) == 1 and len(tips) != 1:
-        array = np.ascontiguousarray(np.broadcast_to(array, tips.shape))
-    if array.shape != tips.shape:
-        raise ValueError(f"{name} has the shape {array.shape}, tip {tips.shape}")
-    return array
-
-
-def point(values: Sequence[float]) -> tuple[float, float, float]:
-    """Three coordinates."""
-    x, y, z = (float(value) for value in values)
-    return x, y, z
-
-
-def written(value: Value) -> str:
-    """A value as a machine file has it."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
-    if isinstance(value, (int, np.integer)):
-        return str(int(value))
-    if isinstance(value, (float, np.floating)):
-        return repr(float(value))
-    return f"[{', '.join(written(item) for item in value)}]"
-
-
-def told(options: Mapping[str, object]) -> list[tuple[str, bool | int | float | str | list[str]]]:
-    """Options by their names, as values of Python's own; what is none or false is left out."""
-    return [
-        (name, plain(name, value)) for name, value in options.items() if value is not None and value is not False
-    ]
-
-
-def plain(name: str, value: object) -> bool | int | float | str | list[str]:
-    """A value of an option: numbers of NumPy are numbers, and what can be gone over is a list of texts."""
-    if isinstance(value, (np.integer, np.floating)):
-        return value.item()
-    if isinstance(value, (bool, str, int, float)):
-        return value
-    if isinstance(value, Iterable):
-        return [str(item) for item in value]
-    raise TypeError(f"{name} cannot be {value!r}")

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -12,18 +11,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from post import _native
+from post import _native, arguments
+from post.arguments import Path
 from post.refusal import Diagnostic, Told, diagnostics
 
 if TYPE_CHECKING:
-    from post.machine import Floats, Path
+    import pyarrow
+
+    from post.points import PointFile
 
 Summary = dict[str, Any]
 """What JSON of the command tells; its keys are in the command's README."""
 
+_WORDS = ("kind", "reason", "limit")
+"""Columns that are words: numbers of which come from Rust, -1 for none."""
 
-class Blocks(Mapping[str, NDArray[Any]]):
-    """The blocks of a program as columns: ``blocks["time_s"]``, one row a block; ``dict(blocks)`` has them all.
+
+class Blocks(dict[str, NDArray[Any]]):
+    """The blocks of a program as columns of one value a block: ``pandas.DataFrame(blocks)``, ``polars.DataFrame(blocks)``,
+    :meth:`to_arrow`, and whatever else takes an Arrow stream. Coordinates and axis values are columns of their own,
+    ``q_X``, ``tip_x``, ``axis_z``; ``blocks["q"]``, ``blocks["tip"]`` and ``blocks["axis"]`` are these side by side.
 
     ======================= =========================================================================================
     ``nc_line``             line of the program; 0 of a block that prints nothing
@@ -49,22 +56,41 @@ class Blocks(Mapping[str, NDArray[Any]]):
 
     def __init__(self, told: dict[str, Any]) -> None:
         self.axes = tuple(told.pop("axes"))
-        for column, names in (("kind", "kinds"), ("reason", "reasons")):
-            told[column] = np.array(told.pop(names))[told[column]]
-        # The last stands for none: numpy counts -1 from the end.
-        told["limit"] = np.array([*told["limits"], ""])[told["limit"]]
-        del told["limits"]
-        self._columns: dict[str, NDArray[Any]] = told
+        self._words = {name: tuple(told.pop(f"{name}s")) for name in _WORDS}
+        self._places = {name: told[name] for name in _WORDS}
+        self._sets: dict[str, NDArray[Any]] = {}
+        super().__init__()
+        for name, values in told.items():
+            if name in _WORDS:
+                # The last stands for none: numpy counts -1 from the end.
+                self[name] = np.array([*self._words[name], ""])[values]
+            elif values.ndim == 1:
+                self[name] = values
+            else:
+                self._sets[name] = values
+                parts = self.axes if name == "q" else ("x", "y", "z")
+                self.update({f"{name}_{part}": values[:, place] for place, part in enumerate(parts)})
 
-    def __getitem__(self, column: str) -> NDArray[Any]:
-        return self._columns[column]
+    def __missing__(self, name: str) -> NDArray[Any]:
+        return self._sets[name]
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._columns)
+    def to_arrow(self) -> pyarrow.Table:
+        """The table for pyarrow, which the extra ``nc-post[arrow]`` installs; words are dictionaries, and none is null."""
+        import pyarrow
 
-    def __len__(self) -> int:
-        """How many columns there are; ``len(blocks["time_s"])`` is how many blocks."""
-        return len(self._columns)
+        def column(name: str, values: NDArray[Any]) -> Any:
+            if name not in _WORDS:
+                return pyarrow.array(np.ascontiguousarray(values))
+            places = self._places[name].astype(np.int32)
+            places = pyarrow.array(places, mask=places < 0)
+            words = pyarrow.array(self._words[name], pyarrow.string())
+            return pyarrow.DictionaryArray.from_arrays(places, words)
+
+        return pyarrow.table({name: column(name, values) for name, values in self.items()})
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """The table for whatever takes Arrow (its PyCapsule interface); pyarrow makes it."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
 
     def __repr__(self) -> str:
         return f"<post.Blocks {len(self['time_s'])} blocks, {', '.join(self)}>"
@@ -90,8 +116,12 @@ class Job:
     """A CL file that was posted; :meth:`post.Machine.post` makes one. The CL file and the machine file must still be as
     they were when more is asked of it."""
 
-    def __init__(self, native: _native.Job, planned: Callable[[int | None], Job]) -> None:
+    def __init__(
+        self, native: _native.Job, planned: Callable[[int | None], Job], listed: PointFile | None = None
+    ) -> None:
         self._native = native
+        # Its CL file is there as long as the job.
+        self._listed = listed
         self._planned = planned
 
     def __repr__(self) -> str:
@@ -151,7 +181,7 @@ class Job:
         """Predicts what the program does on its machine, as ``post predict --against`` the CL file: cycle time, true feed,
         and how far the tool strays. ``period`` is the time between set-points, s, over that of the machine file.
         """
-        return found(self._native.predict(period))
+        return found(self._native.predict(arguments.number_if_any("period", period)))
 
     def plan(self, rounds: int | None = None) -> Job:
         """The same job with its feed planned (``--plan``, ``--plan-rounds``)."""
@@ -169,7 +199,7 @@ class Job:
         """Writes a page to look at, one HTML file that any browser shows from the disk, as ``--report``; with what
         ``--verify``, ``--clearance`` and ``--predict`` find, if they are asked for. The program is made once more for it.
         """
-        self._native.report(os.fspath(path), verify, clearance, predict, max_mb)
+        self._native.report(arguments.path("path", path), verify, clearance, predict, max_mb)
 
 
 def found(told: tuple[str, list[Told]]) -> Found:

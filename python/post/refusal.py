@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
@@ -32,9 +33,34 @@ class Diagnostic:
         return f"{place}{self.severity}[{self.code}]: {self.message}{help}"
 
 
+_SET = re.compile(r"(?<![\w-])--set '?([\w.]+)=([^\s',;)]+)'?")
+_FLAG = re.compile(r"(?<![\w-])--([a-z][a-z0-9]*(?:-[a-z0-9]+)*)(?:\[?=?<[^>]*>\]?| <[^>]*>)?(?: (-?[0-9][0-9.]*(?:,-?[0-9][0-9.]*)*))?")
+
+
+def as_arguments(text: str) -> str:
+    """What is said of flags of the command said of arguments: ``--tool-length 120`` is ``tool_length=120``."""
+    text = _SET.sub(r'set={"\1": \2}', text)
+
+    def argument(flag: re.Match[str]) -> str:
+        name, value = flag[1].replace("-", "_"), flag[2]
+        if value is None:
+            return name
+        # A sentence may end behind a number.
+        number = value.rstrip(".,")
+        return f"{name}={f'({number})' if ',' in number else number}{value[len(number):]}"
+
+    return _FLAG.sub(argument, text)
+
+
 def diagnostics(told: Iterable[Told]) -> tuple[Diagnostic, ...]:
-    """Findings as Rust tells them."""
-    return tuple(Diagnostic(*fields) for fields in told)  # type: ignore[arg-type]
+    """Findings as Rust tells them, in words of Python."""
+
+    def finding(fields: Told) -> Diagnostic:
+        severity, code, message, help, *place = fields
+        help = None if help is None else as_arguments(help)
+        return Diagnostic(severity, code, as_arguments(message), help, *place)  # type: ignore[arg-type]
+
+    return tuple(finding(fields) for fields in told)
 
 
 class PostError(Exception):

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from post import _native
-from post.machine import Path, told, written
+from post.arguments import Path, path, path_if_any, paths, settings, told, written
 from post.refusal import Diagnostic, PostError
 
 if TYPE_CHECKING:
@@ -131,11 +131,10 @@ def study(
     A job that is refused is a row. ``resume`` names a file that keeps what is done, by content: what is in it is not done
     again. An interrupt (Ctrl-C) ends the study; what was done until then is in ``resume``.
     """
-    paths = [files] if isinstance(files, (str, os.PathLike)) else list(files)
-    names = [machines] if isinstance(machines, (str, os.PathLike)) else list(machines)
-    seeds = [{"file": os.fspath(path)} for path in paths]
+    seeds: list[dict[str, Any]] = [{"file": file} for file in _paths("files", files)]
+    names = _paths("machines", machines)
     seeds += [_job(job) for job in jobs]
-    told_jobs = [job for seed in seeds for job in _laid(seed, [os.fspath(name) for name in names], grid or {})]
+    told_jobs = [job for seed in seeds for job in _laid(seed, names, grid or {})]
     for job in told_jobs:
         if "machine" not in job:
             message = f"no machine is named for {job['file']}"
@@ -157,11 +156,11 @@ def study(
             "spindle": spindle,
             "feed": feed,
             "allow": allow,
-            "machines": [os.fspath(folder) for folder in machine_folders],
-            "plugins": [os.fspath(folder) for folder in plugins],
+            "machines": paths("machine_folders", machine_folders),
+            "plugins": paths("plugins", plugins),
         }
     )
-    native = _native.Study(lines, options, None if resume is None else os.fspath(resume))
+    native = _native.Study(lines, options, path_if_any("resume", resume))
     shown = _Told(native, progress)
     try:
         if engine == "threads":
@@ -175,14 +174,19 @@ def study(
     return Study(native)
 
 
+def _paths(name: str, given: Path | Iterable[Path]) -> list[str]:
+    """One file or folder, or several."""
+    return [path(name, given)] if isinstance(given, (str, os.PathLike)) else paths(name, given)
+
+
 def _job(job: Mapping[str, Any]) -> dict[str, Any]:
     """A job as its line has it: paths as texts, numbers with their digits."""
     told: dict[str, Any] = {}
     for key, value in job.items():
         if key in ("file", "machine"):
-            told[key] = os.fspath(value)
+            told[key] = path(key, value)
         elif key == "set":
-            told[key] = {name: written(one) for name, one in value.items()}
+            told[key] = dict(settings(key, value))
         elif key in _SETTINGS:
             told[key] = _setting(key, value)
         else:
@@ -193,8 +197,8 @@ def _job(job: Mapping[str, Any]) -> dict[str, Any]:
 def _setting(key: str, value: Any) -> Any:
     if key == "mount":
         x, y, z = value
-        return [written(float(part)) if isinstance(part, float) else written(part) for part in (x, y, z)]
-    return written(value)
+        return [written(key, part) for part in (x, y, z)]
+    return written(key, value)
 
 
 def _laid(seed: dict[str, Any], machines: Sequence[str], grid: Mapping[str, Any]) -> Iterable[dict[str, Any]]:
@@ -205,7 +209,7 @@ def _laid(seed: dict[str, Any], machines: Sequence[str], grid: Mapping[str, Any]
     said = seed.get("set", {})
     for key, values in grid.items():
         if key not in _SETTINGS and key not in said:
-            ways.append([("set", key, written(value)) for value in _values(values)])
+            ways.append([("set", key, written(f"grid[{key!r}]", value)) for value in _values(values)])
     for key in _SETTINGS:
         if key in grid and key not in seed:
             values = grid[key]

@@ -1,9 +1,13 @@
 //! Work that needs no Python: the interpreter's lock is released, and what goes wrong becomes an exception.
 
 use std::any::Any;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
 
 use post_job::library::{Refusal, StopSignal};
 use post_machine::diagnostic::Diagnostic;
@@ -14,43 +18,59 @@ use crate::refusal;
 /// So long nobody asks whether the user has pressed Ctrl-C: asking takes the interpreter's lock.
 const BETWEEN: Duration = Duration::from_millis(50);
 
-/// When Python was asked last whether to go on, and what it said against it.
-struct InterruptCheck {
-    last: Instant,
-    raised: Option<PyErr>,
-}
+/// As much as the first thread of a process mostly has.
+const STACK: usize = 8 << 20;
 
-impl InterruptCheck {
-    fn is_stopped(&mut self) -> bool {
-        if self.raised.is_none() && self.last.elapsed() >= BETWEEN {
-            self.last = Instant::now();
-            self.raised = Python::attach(|py| py.check_signals()).err();
-        }
-        self.raised.is_some()
-    }
-}
-
-fn locked(asking: &Mutex<InterruptCheck>) -> std::sync::MutexGuard<'_, InterruptCheck> {
-    asking.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Does `job` while other threads run Python. Ctrl-C ends it at the next piece of its CL file that is read.
+/// Does `job` while other threads run Python, and Ctrl-C ends it soon. Python tells its signals to the thread that waits
+/// here alone, so that the job has one of its own: it asks a flag, wherever it works.
 pub fn apart<T: Send>(
     py: Python<'_>,
     job: impl FnOnce(&StopSignal) -> Result<T, Refusal> + Send,
 ) -> PyResult<T> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&flag);
+    let stop: StopSignal = Arc::new(move || asked.load(Ordering::Relaxed));
     let (done, raised) = py.detach(|| {
-        let asking = Arc::new(Mutex::new(InterruptCheck { last: Instant::now(), raised: None }));
-        let asked = Arc::clone(&asking);
-        let stop: StopSignal = Arc::new(move || locked(&asked).is_stopped());
-        let done = catch_unwind(AssertUnwindSafe(|| job(&stop)));
-        (done, locked(&asking).raised.take())
-    });
-    match (raised, done) {
-        (Some(raised), _) => Err(raised),
-        (None, Ok(Ok(given))) => Ok(given),
-        (None, Ok(Err(refused))) => Err(refusal::raised(py, &refused)),
-        (None, Err(panic)) => Err(refusal::raised(py, &[broken(&*panic)])),
+        thread::scope(|scope| {
+            let (ends, ended) = channel::<()>();
+            let worker = thread::Builder::new().name("post".to_owned()).stack_size(STACK);
+            let worker = worker.spawn_scoped(scope, || {
+                // Whatever it ends by, whoever waits is told.
+                let _ends = ends;
+                job(&stop)
+            })?;
+            let mut raised = None;
+            while ended.recv_timeout(BETWEEN) == Err(RecvTimeoutError::Timeout) {
+                if raised.is_none() {
+                    raised = Python::attach(|py| py.check_signals()).err();
+                    flag.store(raised.is_some(), Ordering::Relaxed);
+                }
+            }
+            Ok::<_, io::Error>((worker.join(), raised))
+        })
+    })?;
+    match raised {
+        Some(raised) => Err(raised),
+        None => given(py, done),
+    }
+}
+
+/// Does what is over at once, on this thread, while others run Python.
+pub fn at_once<T: Send>(
+    py: Python<'_>,
+    job: impl FnOnce(&StopSignal) -> Result<T, Refusal> + Send,
+) -> PyResult<T> {
+    let stop: StopSignal = Arc::new(|| false);
+    let done = py.detach(|| catch_unwind(AssertUnwindSafe(|| job(&stop))));
+    given(py, done)
+}
+
+/// What a job has given, or the exception that it has come to.
+fn given<T>(py: Python<'_>, done: thread::Result<Result<T, Refusal>>) -> PyResult<T> {
+    match done {
+        Ok(Ok(given)) => Ok(given),
+        Ok(Err(refused)) => Err(refusal::raised(py, &refused)),
+        Err(panic) => Err(refusal::raised(py, &[broken(&*panic)])),
     }
 }
 

@@ -123,6 +123,7 @@ pub fn job(
     Ok(made.into_iter().map(|made| Job { made }).collect())
 }
 
-fn given(found: ProgramFindings) -> (String, Vec<DiagnosticFields>) {
+/// JSON and warnings of what was found.
+pub fn given(found: ProgramFindings) -> (String, Vec<DiagnosticFields>) {
     (found.json, told(&found.findings))
 }

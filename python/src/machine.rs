@@ -8,20 +8,25 @@ use numpy::{
     PyUntypedArrayMethods,
 };
 use post_job::library::{
-    Deviations, LoadedMachine, MachineSelection, MachineSettings, Solutions, ToolPoses,
+    Deviations, LoadedMachine, MachineSelection, MachineSettings, ReadTargets, Solutions,
+    ToolPoses, VerifyOptions,
 };
 use post_machine::description::Setting;
 use pyo3::prelude::*;
 
-use crate::apart::apart;
-use crate::job::Job;
+use crate::apart::{apart, at_once};
+use crate::job::{Job, given};
 use crate::options;
+use crate::refusal::DiagnosticFields;
 
 /// A machine with its settings, a tool in it.
 #[pyclass(frozen, module = "post._native")]
 pub struct Machine {
     loaded: LoadedMachine,
 }
+
+/// So many points are solved on the thread that asks: starting another takes longer than they do.
+const AT_ONCE: usize = 256;
 
 /// Numbers of many points.
 type OutputRows<'py> = Bound<'py, PyArray2<f64>>;
@@ -99,7 +104,7 @@ impl Machine {
         let mut axis = Array2::zeros((q.shape()[0], 3));
         let q = q.as_slice()?;
         if let (Some(tip), Some(axis)) = (tip.as_slice_mut(), axis.as_slice_mut()) {
-            apart(py, |_| {
+            at_once(py, |_| {
                 self.loaded.kinematics().forward(q, tip, axis);
                 Ok(())
             })?;
@@ -125,8 +130,10 @@ impl Machine {
         };
         let near = near.as_slice()?;
         let kinematics = self.loaded.kinematics();
-        let Solutions { width, q, counts } =
-            apart(py, |_| kinematics.inverse(&wanted, near, within_travel))?;
+        let Solutions { width, q, counts } = match points > AT_ONCE {
+            true => apart(py, |stop| kinematics.inverse(stop, &wanted, near, within_travel)),
+            false => at_once(py, |stop| kinematics.inverse(stop, &wanted, near, within_travel)),
+        }?;
         let q = shaped(Array3::from_shape_vec((points, width, kinematics.count()), q))?;
         Ok((q.into_pyarray(py), Array1::from(counts).into_pyarray(py)))
     }
@@ -167,6 +174,65 @@ impl Machine {
         Ok(Job { made })
     }
 
+    /// Reads an NC program: JSON, and warnings.
+    fn read(
+        &self,
+        py: Python<'_>,
+        program: PathBuf,
+        csv: Option<PathBuf>,
+        cl: Option<PathBuf>,
+        options: Vec<(String, options::OptionInput)>,
+    ) -> PyResult<(String, Vec<DiagnosticFields>)> {
+        let options = options::told(options);
+        let targets = ReadTargets { csv: csv.as_deref(), cl: cl.as_deref() };
+        apart(py, |stop| self.loaded.read(stop, &program, targets, &options)).map(given)
+    }
+
+    /// Holds an NC program against a CL file: JSON, and warnings.
+    #[expect(clippy::too_many_arguments, reason = "they are those of Machine.verify")]
+    fn verify(
+        &self,
+        py: Python<'_>,
+        program: PathBuf,
+        against: PathBuf,
+        axis_tolerance: Option<f64>,
+        posted: bool,
+        planned: bool,
+        clearance: bool,
+        options: Vec<(String, options::OptionInput)>,
+    ) -> PyResult<(String, Vec<DiagnosticFields>)> {
+        let options = options::told(options);
+        let how = VerifyOptions { axis_tolerance, posted, planned, clearance };
+        apart(py, |stop| self.loaded.verify(stop, &program, &against, how, &options)).map(given)
+    }
+
+    /// Predicts an NC program: JSON, and warnings.
+    fn predict(
+        &self,
+        py: Python<'_>,
+        program: PathBuf,
+        against: Option<PathBuf>,
+        period: Option<f64>,
+        options: Vec<(String, options::OptionInput)>,
+    ) -> PyResult<(String, Vec<DiagnosticFields>)> {
+        let options = options::told(options);
+        let against = against.as_deref();
+        apart(py, |stop| self.loaded.predict(stop, &program, against, period, &options)).map(given)
+    }
+
+    /// Looks over an NC program: JSON, and warnings.
+    fn lint(
+        &self,
+        py: Python<'_>,
+        program: PathBuf,
+        ignore: Vec<String>,
+        strict: bool,
+        options: Vec<(String, options::OptionInput)>,
+    ) -> PyResult<(String, Vec<DiagnosticFields>)> {
+        let options = options::told(options);
+        apart(py, |stop| self.loaded.lint(stop, &program, &ignore, strict, &options)).map(given)
+    }
+
     /// How far the tool strays from the straight line between axis values, at shares of the way.
     fn deviation<'py>(
         &self,
@@ -178,7 +244,7 @@ impl Machine {
         let (moves, places) = (q0.shape()[0], shares.shape()[0]);
         let (from, to, shares) = (q0.as_slice()?, q1.as_slice()?, shares.as_slice()?);
         let Deviations { tip, axis } =
-            apart(py, |_| Ok(self.loaded.kinematics().deviation([from, to], shares)))?;
+            at_once(py, |_| Ok(self.loaded.kinematics().deviation([from, to], shares)))?;
         let tip = shaped(Array3::from_shape_vec((moves, places, 3), tip))?;
         let axis = shaped(Array2::from_shape_vec((moves, places), axis))?;
         Ok((tip.into_pyarray(py), axis.into_pyarray(py)))

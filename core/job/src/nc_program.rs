@@ -14,7 +14,7 @@ use super::{machine_files, other_language, plugin_finder, unused_options};
 use crate::disk::{self, File};
 use crate::failure::Failure;
 use crate::files::{FileFault, PathArg};
-use crate::session::Session;
+use crate::session::{Session, Stoppable};
 use crate::settings::ProgramSettings;
 
 /// A text that can be gone back in.
@@ -249,6 +249,7 @@ pub struct ProgramFile {
     /// What messages call it.
     pub name: String,
     file: File,
+    session: Session,
 }
 
 impl ProgramFile {
@@ -258,18 +259,18 @@ impl ProgramFile {
     /// It cannot be read.
     pub fn open(session: &Session, source: &PathArg) -> Result<Self, FileFault> {
         let (name, file) = open_as(session, WHAT, source)?;
-        Ok(Self { name, file })
+        Ok(Self { name, file, session: session.clone() })
     }
 
     /// Its text from the beginning: whoever read it before is done.
     ///
     /// # Errors
     /// It cannot be read again.
-    pub fn text(&self) -> Result<File, FileFault> {
-        let again = || -> io::Result<File> {
+    pub fn text(&self) -> Result<Stoppable<File>, FileFault> {
+        let again = || -> io::Result<Stoppable<File>> {
             let mut again = self.file.try_clone()?;
             again.seek(SeekFrom::Start(0))?;
-            Ok(again)
+            Ok(self.session.stoppable(again))
         };
         again().map_err(|error| FileFault::Read { name: self.name.clone(), error })
     }

@@ -332,6 +332,7 @@ pub fn hold<C: Course>(
         let mut progress = reading.session.progress(Some(run.length));
         let mut batch = RunBlocks::default();
         while !verifier.found().gave_up && work.next(&mut batch) {
+            reading.session.go_on().map_err(unreadable)?;
             for done in batch.iter() {
                 progress.record(|| run.position.get());
                 blocks += 1;
@@ -345,7 +346,8 @@ pub fn hold<C: Course>(
             }
         }
         progress.finish();
-    });
+        Ok::<(), FileFault>(())
+    })?;
     if verifier.found().gave_up && reading.runs_beside() {
         // It was run farther than it was judged.
         drop(run);

@@ -1,7 +1,7 @@
 //! One run of jobs: what it reads and writes, and the face through which it speaks. It is passed; nothing of a run is a static.
 
 use std::fmt;
-use std::io::{self, Read};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use post_machine::diagnostic::Diagnostic;
@@ -22,7 +22,7 @@ pub trait Face: Send + Sync {
         None
     }
 
-    /// Says that the run shall end; it is asked as CL files are read.
+    /// Says that the run shall end; it is asked as CL files and programs are read, and from one batch to the next.
     fn is_stopped(&self) -> bool {
         false
     }
@@ -111,23 +111,40 @@ impl Session {
         self.run.face.owns_output()
     }
 
+    /// Refuses to go on once the run shall end.
+    ///
+    /// # Errors
+    /// It shall end.
+    pub fn go_on(&self) -> io::Result<()> {
+        match self.run.face.is_stopped() {
+            true => Err(io::Error::other("interrupted")),
+            false => Ok(()),
+        }
+    }
+
     /// What reads `bytes`, and fails once the run shall end.
-    pub fn stoppable(&self, bytes: impl Read + Send + 'static) -> Box<dyn Read + Send> {
-        Box::new(SessionReader { bytes, session: self.clone() })
+    pub fn stoppable<R>(&self, bytes: R) -> Stoppable<R> {
+        Stoppable { bytes, session: self.clone() }
     }
 }
 
-struct SessionReader<R> {
+/// A text that cannot be read any more once its run shall end.
+#[derive(Debug)]
+pub struct Stoppable<R> {
     bytes: R,
     session: Session,
 }
 
-impl<R: Read> Read for SessionReader<R> {
+impl<R: Read> Read for Stoppable<R> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        if self.session.run.face.is_stopped() {
-            return Err(io::Error::other("interrupted"));
-        }
+        self.session.go_on()?;
         self.bytes.read(into)
+    }
+}
+
+impl<R: Seek> Seek for Stoppable<R> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.bytes.seek(to)
     }
 }
 

@@ -72,7 +72,7 @@ impl ClInput {
         }
         Ok(Self {
             name,
-            bytes: session.stoppable(file),
+            bytes: Box::new(session.stoppable(file)),
             length: metadata.is_file().then_some(metadata.len()),
             further: Arc::default(),
         })

@@ -9,7 +9,7 @@ use post_machine::kinematics::orientation::angle;
 use post_machine::kinematics::travel::{AT_END, passed};
 use post_machine::kinematics::{Joints, Pose, Solver};
 
-use super::Refusal;
+use super::{Refusal, StopSignal};
 
 /// What is known of an axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -191,9 +191,10 @@ impl MachineKinematics {
     /// outside travel are left out.
     ///
     /// # Errors
-    /// A point that is none.
+    /// A point that is none, or that it was stopped.
     pub fn inverse(
         &self,
+        stop: &StopSignal,
         wanted: &ToolPoses<'_>,
         near: &[f64],
         within_travel: bool,
@@ -203,7 +204,11 @@ impl MachineKinematics {
         let poses = wanted.poses(self.has_edge())?;
         let mut all: Vec<Joints> = Vec::with_capacity(2 * poses.len());
         let mut counts = Vec::with_capacity(poses.len());
-        for pose in &poses {
+        for (index, pose) in poses.iter().enumerate() {
+            if stop() {
+                let message = format!("interrupted at point {index}");
+                return Err(vec![Diagnostic::error("input", message)]);
+            }
             let solved = self.solver.inverse(pose, &near, tolerance);
             let solved = solved.unwrap_or_default().into_iter();
             let before = all.len();

@@ -114,7 +114,7 @@ impl LoadedMachine {
         };
         let (format, _) = quietly(stop, open)?;
         let length = self.told.over.tool_length.unwrap_or(0.0);
-        let found = whole_pass(machine, &format, length, &path)?;
+        let found = whole_pass(machine, &format, length, &path, &|| stop())?;
         let count = self.kinematics.count();
         let mut q = vec![0.0; found.len() * count];
         for (joints, row) in found.iter().zip(q.chunks_exact_mut(count)) {

@@ -7,6 +7,7 @@
 mod blocks;
 mod kinematics;
 mod loaded_machine;
+mod nc_program;
 mod program;
 mod study;
 
@@ -23,6 +24,7 @@ pub use crate::settings::{MachineSettings, SettingValue};
 pub use blocks::{Array, Blocks, KINDS, REASONS, block_arrays};
 pub use kinematics::{AxisFacts, Deviations, MachineKinematics, Solutions, ToolPoses};
 pub use loaded_machine::{LoadedMachine, MachineSelection};
+pub use nc_program::{ReadTargets, VerifyOptions};
 pub use program::{MadeProgram, ProgramFindings, ReportOptions};
 pub use study::{Progressed, StudyColumn, StudyJobs, StudyPart, StudyTable, StudyValues};
 
@@ -32,7 +34,8 @@ pub type NamedOption = (String, SettingValue);
 /// Why a job was not done: findings, an error among them.
 pub type Refusal = Vec<Diagnostic>;
 
-/// Says that a job shall end; it is asked as its CL file is read.
+/// Says that a job shall end; it is asked as its files are read, from batch to batch of a prediction, and from point to point
+/// of kinematics: it takes no longer than a look at a flag.
 pub type StopSignal = Arc<dyn Fn() -> bool + Send + Sync>;
 
 /// A face that keeps findings for whoever called.

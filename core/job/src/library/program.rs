@@ -38,7 +38,7 @@ struct Request {
 }
 
 /// A file, and never a standard stream: those are not ours.
-fn file(path: &Path) -> PathArg {
+pub(super) fn file(path: &Path) -> PathArg {
     PathArg::from(match path.as_os_str() == "-" {
         true => Path::new("./-").to_owned(),
         false => path.to_owned(),
@@ -87,6 +87,13 @@ pub struct ProgramFindings {
     pub json: String,
     /// Warnings.
     pub findings: Vec<Diagnostic>,
+}
+
+impl ProgramFindings {
+    /// What a job has given, and what it has said on the way.
+    pub(super) fn of(((json, found), said): ((String, Vec<Diagnostic>), Vec<Diagnostic>)) -> Self {
+        Self { json, findings: said.into_iter().chain(found).collect() }
+    }
 }
 
 /// What a report shall tell besides.
@@ -291,6 +298,12 @@ impl MadeProgram {
         self.request.making.plan
     }
 
+    /// It, to be read by a run.
+    fn program(&self, session: &Session) -> ProgramInput<'_> {
+        let text = Box::new(session.stoppable(Cursor::new(&self.text)));
+        ProgramInput { name: self.name(), text }
+    }
+
     /// Reads it back and holds it against the CL file, as `post verify` does.
     ///
     /// # Errors
@@ -299,8 +312,7 @@ impl MadeProgram {
         let held = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::of_job(session, &self.request.job, true)?;
-            let program =
-                ProgramInput { name: self.name(), text: Box::new(Cursor::new(&self.text)) };
+            let program = self.program(session);
             let held = maker.read_back(&self.part, self.moved, &mut source, program)?;
             match held.is_wrong() {
                 true => Err(held.findings.into()),
@@ -310,9 +322,7 @@ impl MadeProgram {
                 }
             }
         });
-        let ((json, found), mut findings) = held?;
-        findings.extend(found);
-        Ok(ProgramFindings { json, findings })
+        held.map(ProgramFindings::of)
     }
 
     /// Proves that nothing hits anything while it runs, as `post clearance` does with the CL file: what a summary tells of
@@ -324,17 +334,14 @@ impl MadeProgram {
         let proven = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::of_job(session, &self.request.job, true)?;
-            let program =
-                ProgramInput { name: self.name(), text: Box::new(Cursor::new(&self.text)) };
+            let program = self.program(session);
             let proven = maker.prove(&self.part, self.moved, &mut source, program, None)?;
             match proven.is_wrong() {
                 true => Err(proven.findings.into()),
                 false => Ok((files::json(&proven.summary()), proven.findings)),
             }
         });
-        let ((json, found), mut findings) = proven?;
-        findings.extend(found);
-        Ok(ProgramFindings { json, findings })
+        proven.map(ProgramFindings::of)
     }
 
     /// Predicts what it does on its machine, as `post predict` with the CL file does; `period` between set-points, s, over
@@ -350,14 +357,11 @@ impl MadeProgram {
         let predicted = quietly(stop, |session| {
             let maker = self.request.maker(session)?;
             let mut source = ClSource::of_job(session, &self.request.job, true)?;
-            let program =
-                ProgramInput { name: self.name(), text: Box::new(Cursor::new(&self.text)) };
+            let program = self.program(session);
             let predicted = maker.predict(&self.part, period, &mut source, None, program)?;
             Ok((files::json(&predicted.found), predicted.findings))
         });
-        let ((json, found), mut findings) = predicted?;
-        findings.extend(found);
-        Ok(ProgramFindings { json, findings })
+        predicted.map(ProgramFindings::of)
     }
 
     /// Writes a page to look at, the bytes that `--report` writes. The program is made once more for it.

@@ -143,6 +143,7 @@ pub fn predict(
         let mut work = Work::start(scope, &mut trajectory, beside.then_some(TOGETHER));
         let mut batch = Vec::new();
         while work.next(&mut batch) {
+            asked.session.go_on().map_err(unreadable)?;
             progress.some_records(batch.len() as u64, || position.get());
             batch.iter_mut().try_for_each(|news| stream.take(news, watch))?;
         }

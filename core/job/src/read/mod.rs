@@ -2,6 +2,7 @@
 
 pub(crate) mod beyond_travel;
 mod motions_csv;
+mod summary;
 mod survey;
 
 use post_machine::diagnostic::{Diagnostic, Severity};
@@ -18,6 +19,7 @@ use crate::session::Session;
 use beyond_travel::BeyondTravel;
 use motions_csv::MotionsCsv;
 
+pub use summary::{ReadSummary, ToolUseSummary};
 pub use survey::{ProgramSurvey, ToolUse};
 
 /// Of the machine's tolerance so much is used by chords of curves that no record of a CL file has.

@@ -10,15 +10,16 @@ use crate::program::StraightMove;
 
 /// The axis values of each point of `path`, chosen over the whole of it as for a program whose words are written as
 /// `format` says, with a tool of `length` mm. The machine does not draw its tool back: where a cut cannot go on, that is
-/// a fault.
+/// a fault. `is_stopped` says that nobody wants it any more.
 ///
 /// # Errors
-/// What the machine lacks, or every point that it cannot reach, by its place in `path` counted from 0.
+/// What the machine lacks, every point that it cannot reach, by its place in `path` counted from 0, or that it was stopped.
 pub fn whole_pass(
     machine: &Machine,
     format: &Format,
     length: f64,
     path: &[StraightMove],
+    is_stopped: &dyn Fn() -> bool,
 ) -> Result<Vec<Joints>, Vec<Diagnostic>> {
     let machine = Machine { rewind: None, ..machine.clone() };
     let along = machine.control_point.along;
@@ -27,6 +28,9 @@ pub fn whole_pass(
     let mut found = vec![Joints::default(); path.len()];
     let mut chosen = Vec::new();
     for (index, motion) in path.iter().enumerate() {
+        if is_stopped() {
+            return Err(vec![Diagnostic::error("input", format!("interrupted at point {index}"))]);
+        }
         let guided = StraightMove { tip: motion.tip + motion.axis * along, ..*motion };
         if let Err(lost) = route.add(index as u64, &guided) {
             let (DroppedPoint::Point(fault) | DroppedPoint::Path(fault)) = lost;

@@ -196,7 +196,8 @@ class Control(Reader):
         """Spindle, coolant and tool."""
         if 6 in switches or (self.dialect == "grbl" and "T" in words and 0 in switches):
             self.tool, self.sense = self.called, 0
-            if self.dialect == "fagor":
+            # At GRBL's stop the user measures each tool against the work offset.
+            if self.dialect in ("fagor", "grbl"):
                 self.offset = self.lengths[self.tool or 0]
         if "S" in words:
             self.spindle = words["S"]

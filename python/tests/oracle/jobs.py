@@ -38,6 +38,12 @@ class Operation:
     dwell: float = 0.0
     cycle: str = ""
     depth: float = 0.0
+    peck: float = 0.0
+
+    @property
+    def pecks(self) -> int:
+        """How many whole pecks the depth has."""
+        return round(self.depth / self.peck)
 
     def feed_a_minute(self) -> float:
         """mm/min."""
@@ -76,7 +82,7 @@ class Job:
                 lines.append(f"DELAY/{one.dwell:.3f}")
             if one.cycle:
                 deep = f"FEDTO,{-one.depth / unit:.8f}"
-                peck = f"STEP,{one.depth / 3 / unit:.8f}," if one.cycle == "DEEP" else ""
+                peck = f"STEP,{one.peck / unit:.8f}," if one.cycle == "DEEP" else ""
                 lines.append(f"CYCLE/{one.cycle},{deep},{peck}{per},{speed},RAPTO,{3 / unit:.8f}")
                 lines += [goto(leg.points[-1], leg.axes[-1]) for leg in one.legs]
                 lines.append("CYCLE/OFF")
@@ -177,6 +183,8 @@ def operation(rng: np.random.Generator, machine: Machine) -> Operation:
             leg = line(last, tip, before, axis)
         legs.append(leg)
         last, before = leg.points[-1], axis
+    depth = round(float(rng.uniform(2, 25)), 3)
+    peck = depth / int(rng.integers(2, 6)) if rng.random() < 0.1 else round(depth * float(rng.uniform(0.2, 1.2)), 3)
     per_turn = rng.random() < 0.15
     return Operation(
         start,
@@ -189,5 +197,6 @@ def operation(rng: np.random.Generator, machine: Machine) -> Operation:
         str(rng.choice(["", "FLOOD", "MIST"])),
         round(float(rng.uniform(0.2, 3)), 1) if rng.random() < 0.2 else 0.0,
         cycle,
-        round(float(rng.uniform(2, 25)), 3),
+        depth,
+        peck,
     )

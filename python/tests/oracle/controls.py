@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from oracle.machine import Machine, turn
-from oracle.program import PLANES, Arc, Reader, Unread, arc_points
+from oracle.program import MEASURED, PLANES, Arc, Reader, Unread, arc_points
 
 SHARES = np.linspace(0, 1, 17)
 DWELLS = {
@@ -95,6 +95,14 @@ class Control(Reader):
             except (KeyError, IndexError) as wrong:
                 raise Unread(f"{line}: {block}: {wrong!r}") from wrong
 
+    def counted_from(self) -> dict[str, float]:
+        """As of a reader; an offset that was measured with the tool has one zero across it, its length on or off."""
+        zero = super().counted_from()
+        if self.offset is None and self.leans < MEASURED:
+            measured = self.machine.work_zero(self.lengths.get(self.tool or 0, 0.0))
+            zero = {**zero, **{letter: measured[letter] for letter in "XYZ" if letter != self.along}}
+        return zero
+
     # Motion
 
     def go(
@@ -111,7 +119,9 @@ class Control(Reader):
         shown = {name: self.shown[name] + (to[name] - self.shown[name]) * t for name in to}
         if led:
             rotation, origin = self.frame or (np.eye(3), np.zeros(3))
-            length = self.offset if self.offset is not None else self.lengths.get(self.tool or 0, 0) if self.tcp else 0.0
+            length = (
+                self.offset if self.offset is not None else self.lengths.get(self.tool or 0, 0) if self.tcp else 0.0
+            )
             begin = rotation.T @ (machine.tip_in_part(first, length)[0] - origin)
         else:
             zero = dict.fromkeys("XYZ", 0.0) if machine_words else self._zero(first)
@@ -240,7 +250,34 @@ class Control(Reader):
             self.dwelt += words[letter] * unit
             return
         okuma = self.dialect == "okuma"
-        known = {0, 1, 2, 3, 8, 17, 18, 19, 21, 40, 43, 49, 53, 54, 61, 64, 69, 71, 80, 90, 91.1, 92.1, 92.2, 93, 94, 95}
+        known = {
+            0,
+            1,
+            2,
+            3,
+            8,
+            17,
+            18,
+            19,
+            21,
+            40,
+            43,
+            49,
+            53,
+            54,
+            61,
+            64,
+            69,
+            71,
+            80,
+            90,
+            91.1,
+            92.1,
+            92.2,
+            93,
+            94,
+            95,
+        }
         known |= {97, 98, 99, 15, 16, 56, 53.1, 68.2, 254, 255, 162} | DRILLS | LED.get(self.dialect, set())
         if codes - known:
             raise Unread(f"{line}: {block}")

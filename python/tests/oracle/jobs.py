@@ -52,13 +52,16 @@ class Operation:
 
 @dataclass(frozen=True)
 class Job:
-    """Operations in their order; ``inch``: the CL file counts in inches."""
+    """Operations in their order; ``inch``: the CL file counts in inches; ``leaning``: slides of its machine are not
+    square, ``turned``: rotary axes turn slides."""
 
     operations: tuple[Operation, ...]
     inch: bool = False
     options: tuple[str, ...] = ()
     dialect: str = "fanuc"
     lengths: dict[int, float] = field(default_factory=dict)
+    leaning: bool = False
+    turned: bool = False
 
     def text(self) -> str:
         """The CL file."""
@@ -191,7 +194,9 @@ def operation(rng: np.random.Generator, machine: Machine) -> Operation:
         axes[0],
         tuple(legs),
         int(rng.integers(1, 3)),
-        float(rng.integers(500, 9000) * rng.choice([-1, 1], p=[0.1, 0.9])) if not cycle else float(rng.integers(500, 9000)),
+        float(rng.integers(500, 9000) * rng.choice([-1, 1], p=[0.1, 0.9]))
+        if not cycle
+        else float(rng.integers(500, 9000)),
         "MMPR" if per_turn else "MMPM",
         round(float(rng.uniform(0.05, 0.4)), 3) if per_turn else float(rng.integers(100, 3000)),
         str(rng.choice(["", "FLOOD", "MIST"])),

@@ -55,20 +55,23 @@ DIALECTS = {
 }
 """What each must be told to write anything."""
 NO_TCP = {"okuma", "grbl", "brother"}
+REASONS = re.compile(r"error\[([a-z-]+)\]")
 PLANES = ("G68.2", "G254", "PLANE SPATIAL", "#CS ON")
-KNOWN = {
+KNOWN: dict[str, Callable[[Job, str, str], bool]] = {
     "a peck of nothing": lambda job, said, text: "DEEP" in job.text() and divided(job) and "hole" in said,
     "G93 beside a pole": lambda job, said, text: (
         set(REASONS.findall(said)) == {"feed"} and any(float(one) > 1e5 for one in re.findall(r"F(\d+\.?\d*)", text))
     ),
     "a plane where the slides turn": lambda job, said, text: (
-        job.turned and any(word in text for word in PLANES) and bool(set(REASONS.findall(said)) & {"nc-plane", "feed"})
+        job.turned
+        and any(word in text for word in PLANES)
+        and bool(set(REASONS.findall(said)) & {"nc-plane", "feed", "register"})
     ),
     "the tool at GRBL's stop": lambda job, said, text: (
         job.dialect == "grbl" and any(one.tool == 2 for one in job.operations) and "rror[" in said
     ),
     "a rapid beside an earlier cut": lambda job, said, text: (
-        set(REASONS.findall(said)) == {"rapid"} and "of what is cut" in said and len(job.operations) > 1
+        set(REASONS.findall(said)) == {"rapid"} and "of what is cut" in said
     ),
     "slides that lean under TCP": lambda job, said, text: (
         set(REASONS.findall(said)) <= {"deviation", "added", "missing", "axis-deviation"} and job.leaning
@@ -78,7 +81,6 @@ KNOWN = {
     ),
 }
 """Faults that are known, by what ``verify`` says of them."""
-REASONS = re.compile(r"error\[([a-z-]+)\]")
 
 
 def world(rng: np.random.Generator, folder: Path) -> tuple[Machine, Job]:
@@ -183,7 +185,7 @@ def wrongs(machine: Machine, job: Job, text: str) -> Iterator[str]:
             while one.cycle and np.linalg.norm(group[-1].tips[-1] - bottom) > 0.05 and at < len(cuts):
                 group, at = [*group, *cuts[at]], at + 1
             # A last peck may be divided once more: it ends where the one before did.
-            while one.cycle and at < len(cuts) and np.linalg.norm(cuts[at][-1].tips[-1] - bottom) < DIGIT:
+            while one.cycle and at < len(cuts) and np.linalg.norm(cuts[at][-1].tips[-1] - bottom) < 0.05:
                 group, at = [*group, *cuts[at]], at + 1
             off = slack(machine, group[-1], job.lengths[one.tool]) + allowed
             where = f"operation {number}, line {group[0].line}"

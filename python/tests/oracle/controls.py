@@ -26,7 +26,7 @@ DWELLS = {
 }
 """The letter of a dwell, and seconds of one of it."""
 DRILLS = {73, 81, 82, 83, 84, 85, 86, 89}
-LED = {"fanuc": {43.4}, "mazak": {43.4}, "mitsubishi": {43.4}, "syntec": {43.4}, "brother": {43.4}, "haas": {234}}
+LED: dict[str, set[float]] = {"fanuc": {43.4}, "mazak": {43.4}, "mitsubishi": {43.4}, "syntec": {43.4}, "brother": {43.4}, "haas": {234}}
 """Codes by which the control keeps the tip; G49 ends it."""
 
 

@@ -178,7 +178,8 @@ def operation(rng: np.random.Generator, machine: Machine) -> Operation:
     tips = (at + rng.uniform(5, 40, 3) * np.sin(rng.uniform(0.5, 3, 3) * share * 2)).round(6)
     cycle = str(rng.choice(["DRILL", "DEEP"])) if kind == "holes" else ""
     start = (tips[0] + float(rng.uniform(5, 30)) * axes[0]).round(6)
-    legs, last, before = [], start, axes[0]
+    legs: list[Leg] = []
+    last, before = start, axes[0]
     for tip, axis in zip(tips, axes):
         if kind in ("plane", "upright") and legs and rng.random() < 0.4:
             leg = circle(rng, last, axis)

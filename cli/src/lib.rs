@@ -6,6 +6,7 @@ pub mod failure;
 pub mod terminal;
 
 use failure::CommandFault;
+use post_host::{Isolation, Limits};
 use post_job::session::Session;
 use post_job::{files, plugin_finder};
 use terminal::Terminal;
@@ -16,10 +17,14 @@ pub mod internals {
     pub use crate::terminal::plain;
 }
 
-/// Does `job`, tells why it failed, and ends the process.
+/// Does `job`, tells why it failed, and ends the process. A process that was started for a library serves that instead.
 pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), CommandFault>) -> ! {
+    post_host::serve_if_asked();
     files::delete_on_signals();
+    #[cfg(unix)]
+    post_host::watch_for_crash();
     let session = Session::new(Terminal);
+    session.isolate(Isolation::new(Limits::default()));
     // A plugin that ends the process would else look like a command that has done its work.
     let told = session.clone();
     let _watch = post_host::watch_for_exit(move |fault| {

@@ -9,6 +9,7 @@ mod complete;
 mod convert;
 mod diff;
 mod explain;
+mod isolation;
 mod late;
 mod lint;
 mod list_machines;
@@ -43,6 +44,7 @@ use complete::CompletionsArguments;
 use convert::ConvertArguments;
 use diff::DiffArguments;
 use explain::ExplainArguments;
+use isolation::IsolationArguments;
 use late::Late;
 use lint::LintArguments;
 use list_machines::MachinesArguments;
@@ -109,6 +111,8 @@ from standard output went away before its end.",
 pub struct CommandLine<const LATE: bool = true> {
     #[command(flatten)]
     post: Nameless,
+    #[command(flatten)]
+    isolation: IsolationArguments,
     #[command(subcommand)]
     verb: Option<Verb<LATE>>,
 }
@@ -206,6 +210,7 @@ impl CommandLine {
 
     /// Does what the command line says.
     pub fn run(self, session: &Session) -> Result<(), CommandFault> {
+        self.isolation.apply(session);
         let done = match self.verb {
             None => self.post.0.map_or(Ok(()), |post| post::run(session, &post)),
             Some(Verb::Words(Late(arguments))) => list_words::run(session, &arguments),

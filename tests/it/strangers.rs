@@ -51,19 +51,107 @@ fn post_with(fault: &str, arguments: &[&str]) -> (Run, tempfile::TempDir) {
     (done, folder)
 }
 
+/// The command ended with 1, said why, and left the folder as it was.
+fn refused(fault: &str, done: &Run, folder: &tempfile::TempDir) {
+    assert_eq!(done.code, 1, "{fault}: {}", done.err);
+    // One that ends as it is opened does so before anybody asks what stands at the targets.
+    let last = done.err.lines().last().unwrap();
+    assert!(last.starts_with("1 error; nothing was written"), "{fault}: {}", done.err);
+    assert_eq!(names(folder.path()), ["blade.cls", "part.nc"], "{fault}");
+    let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    assert_eq!(part, "as it was\n", "{fault}");
+}
+
 #[test]
-fn a_plugin_that_ends_the_command_is_named_and_nothing_is_written() {
+fn a_plugin_that_ends_the_process_is_named_and_nothing_is_written() {
     for fault in ["EXIT_LOAD", "EXIT_OPEN", "EXIT", "QUICK_EXIT", "EXIT_THREAD"] {
-        let (done, folder) = post_with(fault, &["-o", "part.nc", "--summary", "part.json"]);
-        assert_eq!(done.code, 1, "{fault}: {}", done.err);
+        let targets = ["-o", "part.nc", "--summary", "part.json"];
+        let (done, folder) = post_with(fault, &[&targets[..], &["--no-isolate"]].concat());
         assert!(done.err.contains("error[plugin]: plugin `hostile` ("), "{fault}: {}", done.err);
         assert!(done.err.contains("in the middle of its work"), "{fault}: {}", done.err);
-        // One that ends it as it is opened does so before anybody asks what stands at the targets.
-        let last = done.err.lines().last().unwrap();
-        assert!(last.starts_with("1 error; nothing was written"), "{fault}: {}", done.err);
+        refused(fault, &done, &folder);
+        // In a process of its own it is the call that fails.
+        let (done, folder) = post_with(fault, &targets);
+        let message = "it ended its process with exit code 0 in the middle of its work (`";
+        assert!(done.err.contains(message), "{fault}: {}", done.err);
+        refused(fault, &done, &folder);
+    }
+}
+
+#[test]
+fn a_plugin_that_dies_is_named_with_its_event_and_line_and_nothing_is_written() {
+    for (fault, message) in [
+        (
+            "SEGV",
+            "event Start: its process died of signal 11, SIGSEGV, in the middle of its work (`write` of ",
+        ),
+        ("LATER", "event Comment: its process died of signal 11, SIGSEGV,"),
+        ("ABORT", "event Start: its process died of signal 6, SIGABRT,"),
+        (
+            "ABORT_LOAD",
+            "its process died of signal 6, SIGABRT, in the middle of its work (`opening` of ",
+        ),
+        ("DIVIDES", "event Start: its process died of signal 8, SIGFPE,"),
+        ("DEEP", "event Start: its process died of signal 11, SIGSEGV,"),
+        ("KILLS_ITSELF", "event Start: its process died of signal 9, SIGKILL,"),
+        ("EXITS_AT_ONCE", "event Start: it ended its process with exit code 0 in the middle of"),
+        ("FORKS_AND_DIES", "event Start: its process died of signal 6, SIGABRT,"),
+        ("SCRIBBLES", "it wrote to the connection of its process and was stopped in the middle"),
+        ("EATS", "if it wants more than 256 MiB of memory, --plugin-memory gives it more"),
+    ] {
+        let arguments = ["-o", "part.nc", "--summary", "part.json", "--plugin-memory", "256"];
+        let (done, folder) = post_with(fault, &arguments);
+        assert!(done.err.contains(message), "{fault}: {}", done.err);
+        assert!(done.err.contains("libpost_hostile"), "{fault}: {}", done.err);
+        refused(fault, &done, &folder);
+        if fault == "LATER" {
+            assert!(done.err.contains("--> blade.cls:1:1\n"), "{}", done.err);
+        }
+    }
+    for fault in ["CLOSES", "CLOSES_ALL"] {
+        let (done, folder) = post_with(fault, &["-o", "part.nc"]);
+        assert!(done.err.contains("in the middle of its work (`write` of "), "{}", done.err);
+        refused(fault, &done, &folder);
+    }
+}
+
+#[test]
+fn a_plugin_that_does_not_return_is_stopped() {
+    for fault in ["LOOPS", "SLEEPS"] {
+        let (done, folder) = post_with(fault, &["-o", "part.nc", "--plugin-seconds", "0.3"]);
+        let message = "event Start: it did not return within 0.3 s and was stopped in the middle of its work (`write` of ";
+        assert!(done.err.contains(message), "{fault}: {}", done.err);
+        refused(fault, &done, &folder);
+    }
+    // The program was whole before that.
+    let (done, folder) = post_with("CLOSE_LOOPS", &["-o", "part.nc", "--plugin-seconds", "0.3"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    assert!(part.starts_with("G0 X1\n"), "{part}");
+}
+
+#[test]
+fn what_a_plugin_leaves_running_doubles_nothing() {
+    let (plain, _) = post_with("NONE", &["-q", "-o", "-"]);
+    assert_eq!(plain.code, 0, "{}", plain.err);
+    for fault in ["FORKS", "THREAD_GOES_ON"] {
+        let (done, _) = post_with(fault, &["-q", "-o", "-"]);
+        assert_eq!((done.code, &done.out), (0, &plain.out), "{fault}: {}", done.err);
+    }
+    let (trusted, _) = post_with("NONE", &["-q", "-o", "-", "--no-isolate"]);
+    assert_eq!((trusted.code, &trusted.out), (0, &plain.out), "{}", trusted.err);
+}
+
+#[test]
+fn a_trusted_plugin_that_dies_is_named_and_leaves_no_file() {
+    for (fault, signal) in [("SEGV", 11), ("ABORT", 6), ("DIVIDES", 8), ("DEEP", 11)] {
+        let arguments = ["--no-isolate", "-o", "part.nc", "--summary", "part.json"];
+        let (done, folder) = post_with(fault, &arguments);
+        let message = format!("): the command died of signal {signal} in the middle of its work;");
+        assert!(done.err.contains(&message), "{fault}: {}", done.err);
+        assert!(done.err.contains("error[plugin]: plugin `hostile` ("), "{fault}: {}", done.err);
+        assert_eq!(done.code, 1, "{fault}");
         assert_eq!(names(folder.path()), ["blade.cls", "part.nc"], "{fault}");
-        let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
-        assert_eq!(part, "as it was\n", "{fault}");
     }
 }
 

@@ -30,7 +30,7 @@ pub fn finder(session: &Session, named: &[PathBuf]) -> Result<Finder, Vec<Diagno
         standard::keep_apart();
     }
     let linked = post_stock::plugins().iter().copied().map(LinkedPlugin::from);
-    Ok(Finder { folders, linked: linked.collect() })
+    Ok(Finder { folders, linked: linked.collect(), isolation: session.isolation() })
 }
 
 /// The plugin that is called so, or the library at this path.
@@ -43,7 +43,7 @@ pub fn by_name_or_file(
     let is_file = plugin.components().count() > 1 || text.ends_with(DLL_SUFFIX);
     let found = if is_file {
         standard::keep_apart();
-        Plugin::open(plugin)
+        Plugin::open_in(plugin, session.isolation().as_ref())
     } else {
         finder(session, named)?.find(&text)
     };

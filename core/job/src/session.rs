@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use post_host::Isolation;
 use post_machine::diagnostic::Diagnostic;
 
 use crate::files::{ReadFiles, TextOutcomes};
@@ -57,6 +58,7 @@ pub struct Session {
 struct Run {
     read: Mutex<ReadFiles>,
     texts: Mutex<TextOutcomes>,
+    isolation: Mutex<Option<Isolation>>,
     face: Box<dyn Face>,
 }
 
@@ -70,7 +72,8 @@ impl Session {
     /// A run that has read and written nothing yet.
     pub fn new(face: impl Face + 'static) -> Self {
         let face = Box::new(face);
-        let run = Run { read: Mutex::default(), texts: Mutex::default(), face };
+        let (read, texts, isolation) = Default::default();
+        let run = Run { read, texts, isolation, face };
         Self { run: Arc::new(run), shows: true }
     }
 
@@ -104,6 +107,16 @@ impl Session {
     pub fn progress(&self, bytes: Option<u64>) -> Progress {
         let bar = if self.shows { self.run.face.bar(bytes) } else { None };
         Progress { bar, records: 0 }
+    }
+
+    /// From here on libraries run in processes of their own, or in this one.
+    pub fn isolate(&self, isolation: Option<Isolation>) {
+        *self.run.isolation.lock().unwrap_or_else(PoisonError::into_inner) = isolation;
+    }
+
+    /// The processes of libraries; none: they run in this one.
+    pub fn isolation(&self) -> Option<Isolation> {
+        self.run.isolation.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Says that standard output is the run's own, for results alone.

@@ -1,5 +1,7 @@
 //! A run of events, stored flat: no allocation for an event once the buffers have grown.
 
+mod bytes;
+
 use crate::Event;
 use crate::field::{FieldReader, MAX_TEXTS};
 use crate::flat::Flat;

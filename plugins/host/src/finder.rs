@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::described::is_name;
 use crate::plugin::{file_name, name_of};
-use crate::{LinkedPlugin, Plugin, PluginFault, Reason};
+use crate::{Isolation, LinkedPlugin, Plugin, PluginFault, Reason};
 
 /// Where plugins are looked for.
 #[derive(Clone, Debug, Default)]
@@ -16,6 +16,8 @@ pub struct Finder {
     pub folders: Vec<PathBuf>,
     /// The plugins that are part of this program, each judged when it is found.
     pub linked: Vec<LinkedPlugin>,
+    /// Where those of the folders run in processes of their own.
+    pub isolation: Option<Isolation>,
 }
 
 /// A plugin that could be found.
@@ -42,7 +44,7 @@ impl Finder {
             for folder in &self.folders {
                 let path = folder.join(file_name(&wanted));
                 match path.symlink_metadata() {
-                    Ok(_) => return Plugin::open(&path),
+                    Ok(_) => return Plugin::open_in(&path, self.isolation.as_ref()),
                     Err(error) if error.kind() == io::ErrorKind::NotFound => tried.push(path),
                     Err(error) => {
                         return Err(PluginFault {

@@ -159,6 +159,17 @@ unsafe fn name(what: &'static str, given: PostText) -> Result<&'static str, Reas
     // SAFETY: the caller vouches for it.
     let name = unsafe { text(given, MOST_NAME) };
     let name = name.map_err(|lack| nonsense(format!("its {what} {lack}")))?;
+    judge_name(what, name)
+}
+
+/// A name, or the like, is short and of one line.
+pub(crate) fn judge_name<'a>(what: &str, name: &'a str) -> Result<&'a str, Reason> {
+    if name.len() > MOST_NAME {
+        let count = name.len();
+        return Err(nonsense(format!(
+            "its {what} has {count} bytes, at most {MOST_NAME} are taken"
+        )));
+    }
     match name.chars().find(|letter| is_odd(*letter)) {
         None => Ok(name),
         Some(_) => Err(nonsense(format!(
@@ -195,12 +206,23 @@ unsafe fn declared(plugin: &PostPlugin, caller: &Caller) -> Result<&'static [Opt
     let host = (&raw mut specs).cast();
     // SAFETY: `emit` takes the vector.
     caller.call(|| unsafe { describe(host, emit) });
+    judge_options(specs)
+}
+
+/// The options of a plugin, each once and with a default that fits. They are kept for ever.
+pub(crate) fn judge_options(
+    specs: Vec<Result<OptionSpec, String>>,
+) -> Result<&'static [OptionSpec], Reason> {
     if specs.len() > MOST_OPTIONS {
         return Err(nonsense(format!("it declares more than {MOST_OPTIONS} options")));
     }
     let mut good: Vec<OptionSpec> = Vec::with_capacity(specs.len());
     for spec in specs {
         let spec = spec.map_err(|lack| nonsense(format!("an option it declares {lack}")))?;
+        if !is_name(spec.key) || spec.key.len() > MOST_NAME {
+            let lack = format!("has the key `{}`, which is no name", quoted(spec.key));
+            return Err(nonsense(format!("an option it declares {lack}")));
+        }
         if good.iter().any(|other| other.key == spec.key) {
             return Err(nonsense(format!("it declares the option `{}` twice", spec.key)));
         }
@@ -238,9 +260,6 @@ unsafe fn keep(option: &PostOption) -> Result<OptionSpec, String> {
     // SAFETY: for all calls below, the caller vouches for the pointers.
     let key =
         unsafe { text(option.key, MOST_NAME) }.map_err(|lack| format!("has a key that {lack}"))?;
-    if !is_name(key) {
-        return Err(format!("has the key `{}`, which is no name", quoted(key)));
-    }
     let of = |what: &str, lack: String| format!("has {what} that {lack} (`{key}`)");
     let kind = match option.kind {
         raw::OPTION_FLAG => OptionKind::Flag,

@@ -58,6 +58,8 @@ pub fn leave(code: u8) -> ! {
 /// As [`leave`], for the middle of the work: what libraries have printed and the system not yet taken is lost.
 pub fn leave_at_once(code: u8) -> ! {
     OURS.store(true, Ordering::SeqCst);
+    #[cfg(unix)]
+    crate::isolation::kill_all();
     if opened().is_empty() {
         std::process::exit(code.into());
     }
@@ -132,13 +134,13 @@ extern "C" fn ended() {
 
 /// What C code has printed waits in the C library.
 #[cfg(unix)]
-fn flush_libraries() {
+pub(crate) fn flush_libraries() {
     // SAFETY: null means every stream.
     unsafe { libc::fflush(std::ptr::null_mut()) };
 }
 
 #[cfg(unix)]
-fn at_once(code: u8) -> ! {
+pub(crate) fn at_once(code: u8) -> ! {
     // SAFETY: it does not return.
     unsafe { libc::_exit(code.into()) }
 }

@@ -22,14 +22,27 @@ fn opened() -> MutexGuard<'static, BTreeMap<PathBuf, String>> {
     OPENED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// The file at `path`, which must be a library with the plugin `name`, before any of its code runs.
+pub(crate) fn looked(name: &str, path: &Path) -> Result<LibraryFile, Reason> {
+    let symbol = symbol(name);
+    LibraryFile::look(path, &symbol).map_err(|message| match message {
+        Some(message) => system(message),
+        None => Reason::NoSymbol { symbol },
+    })
+}
+
+fn symbol(name: &str) -> String {
+    format!("post_plugin_{name}")
+}
+
+fn system(message: String) -> Reason {
+    Reason::Open { message }
+}
+
 /// Opens the library at `path`, which must hold the plugin `name`.
 pub(crate) fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
-    let system = |message: String| Reason::Open { message };
-    let symbol = format!("post_plugin_{name}");
-    let file = LibraryFile::look(path, &symbol).map_err(|message| match message {
-        Some(message) => system(message),
-        None => Reason::NoSymbol { symbol: symbol.clone() },
-    })?;
+    let symbol = symbol(name);
+    let file = looked(name, path)?;
     let earlier = opened().get(&file.path).cloned();
     if earlier.is_some_and(|earlier| earlier != file.hash) {
         return Err(system("it is open already, and its file was changed since".to_owned()));

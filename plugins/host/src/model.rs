@@ -1,35 +1,34 @@
-//! An opened error model.
+//! An opened error model, wherever it is: what it answers is checked.
 
-#![allow(unsafe_code)]
-
-use std::any::Any;
 use std::cell::RefCell;
-use std::ffi::c_void;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use post_plugin::raw::{self, PostModel, PostPair};
 use post_plugin::{Curve, Deviation, ModelSession, Tolerance};
 
-use crate::call::Caller;
+#[cfg(unix)]
 use crate::described::FunctionTable;
-use crate::float_mode::FloatMode;
-use crate::sink::message;
+#[cfg(unix)]
+use crate::isolation::IsolatedModel;
+use crate::library_model::LibraryModel;
 use crate::{GivenValue, Plugin, PluginFault, PluginKind, Reason, check_options};
 
 /// An error model at work, for one thread.
 #[derive(Debug)]
 pub struct OpenedModel {
     plugin: String,
-    caller: Caller,
-    table: PostModel,
-    ctx: *mut c_void,
+    access: ModelAccess,
     /// Why a value since the last fit could not be had.
     fault: RefCell<Option<String>>,
 }
 
-// SAFETY: the contract lets a context wander between threads, one call at a time; `value` takes `&self`,
-// but the type is not `Sync`, so there is one call at a time.
-unsafe impl Send for OpenedModel {}
+/// How an error model is reached.
+#[derive(Debug)]
+enum ModelAccess {
+    /// Through the C contract.
+    Library(LibraryModel),
+    /// In a process of its own, which is asked through `&self` too.
+    #[cfg(unix)]
+    Isolated(RefCell<IsolatedModel>),
+}
 
 impl Plugin {
     /// Opens this error model for one program and one thread.
@@ -40,25 +39,24 @@ impl Plugin {
         &self,
         options: &[(String, GivenValue)],
     ) -> Result<OpenedModel, PluginFault> {
-        let FunctionTable::Model(table) = self.table else {
+        if self.kind() != PluginKind::ErrorModel {
             return Err(self.other_kind(PluginKind::ErrorModel));
-        };
+        }
         let options = check_options(self.options(), options)
             .map_err(|fault| self.fault(Reason::Option(Box::new(fault))))?;
-        let pairs: Vec<PostPair> =
-            options.iter().map(|(key, value)| PostPair::new(key, &value.as_value())).collect();
-        let caller = self.caller();
-        let mut ctx = std::ptr::null_mut();
-        let refusal = message(|sink| {
-            if let Some(open) = table.open {
-                // SAFETY: the options and the sink live for the call.
-                ctx = caller.call(|| unsafe { open(pairs.as_ptr(), pairs.len(), sink) });
+        let access = match &self.table {
+            #[cfg(unix)]
+            FunctionTable::Isolated(library) => {
+                let model = IsolatedModel::open(library, options);
+                ModelAccess::Isolated(RefCell::new(model.map_err(|reason| self.fault(reason))?))
             }
-        });
-        if ctx.is_null() {
-            return Err(self.fault(Reason::Refused { message: refusal }));
-        }
-        Ok(OpenedModel { plugin: self.name.clone(), caller, table, ctx, fault: RefCell::new(None) })
+            _ => {
+                let model = LibraryModel::open_plugin(self, &options);
+                let refused = |message| self.fault(Reason::Refused { message });
+                ModelAccess::Library(model.map_err(refused)?)
+            }
+        };
+        Ok(OpenedModel { plugin: self.name.clone(), access, fault: RefCell::new(None) })
     }
 }
 
@@ -67,30 +65,18 @@ impl OpenedModel {
         format!("error model `{}`: {message}", self.plugin)
     }
 
-    fn last_error(&self) -> String {
-        let reason = message(|sink| {
-            if let Some(last_error) = self.table.last_error {
-                // SAFETY: the context is open and the sink lives for the call.
-                self.caller.call(|| unsafe { last_error(self.ctx, sink) });
-            }
-        });
-        self.say(&reason)
-    }
-
     fn values<const N: usize>(
         &self,
         curve: &Curve,
         ts: [f64; N],
     ) -> Result<[Deviation; N], String> {
         let mut out = [Deviation::default(); N];
-        // SAFETY: the context is open, all pointers live for the call and hold `N` things.
-        let failed = self.table.value.is_none_or(|value| {
-            let call = || unsafe { value(self.ctx, curve, N, ts.as_ptr(), out.as_mut_ptr()) };
-            self.caller.short_call(call) != 0
-        });
-        if failed {
-            return Err(self.last_error());
-        }
+        let asked = match &self.access {
+            ModelAccess::Library(model) => model.values(curve, &ts, &mut out),
+            #[cfg(unix)]
+            ModelAccess::Isolated(model) => model.borrow_mut().values(curve, &ts, &mut out),
+        };
+        asked.map_err(|message| self.say(&message))?;
         if out.iter().all(Deviation::is_finite) {
             Ok(out)
         } else {
@@ -134,31 +120,12 @@ impl OpenedModel {
         if let Some(fault) = self.fault.take() {
             return Err(fault);
         }
-        let mut bridge = Bridge { deviation, mode: FloatMode::now(), panic: None, fault: None };
-        let mut curve = Curve {
-            tip_peak: f64::NAN,
-            tip_at: f64::NAN,
-            axis_peak: f64::NAN,
-            axis_at: f64::NAN,
-            terms: [0.0; 60],
+        let answer = match &mut self.access {
+            ModelAccess::Library(model) => model.answer(tolerance, deviation),
+            #[cfg(unix)]
+            ModelAccess::Isolated(model) => model.get_mut().fit(tolerance, deviation),
         };
-        // SAFETY: the context is open, all pointers live for the call, and `ask` takes the bridge.
-        let host = (&raw mut bridge).cast();
-        let failed = self.table.fit.is_none_or(|fit| {
-            let call = || unsafe { fit(self.ctx, tolerance, ask, host, &mut curve) };
-            self.caller.call(call) != 0
-        });
-        if let Some(payload) = bridge.panic {
-            // The panic was ours, not the plugin's.
-            resume_unwind(payload);
-        }
-        if let Some(fault) = bridge.fault {
-            return Err(self.say(&fault));
-        }
-        if failed {
-            return Err(self.last_error());
-        }
-        Ok(curve)
+        answer.map_err(|message| self.say(&message))
     }
 }
 
@@ -186,60 +153,4 @@ impl ModelSession for OpenedModel {
     fn fault(&self) -> Option<String> {
         self.fault.borrow().clone()
     }
-}
-
-impl Drop for OpenedModel {
-    fn drop(&mut self) {
-        if let Some(close) = self.table.close {
-            // SAFETY: the context is open, and this is its last use.
-            self.caller.call(|| unsafe { close(self.ctx) });
-        }
-    }
-}
-
-/// Most places of a move that a model may ask for at once.
-const MOST_PLACES: usize = 1 << 20;
-
-/// The host's function on its way through the plugin.
-struct Bridge<'a> {
-    deviation: &'a mut dyn FnMut(&[f64], &mut [Deviation]),
-    /// The host computes with its own rounding, whatever the plugin has set.
-    mode: FloatMode,
-    /// No panic may cross the plugin, so it waits here.
-    panic: Option<Box<dyn Any + Send>>,
-    /// What the plugin asked for that cannot be answered.
-    fault: Option<String>,
-}
-
-unsafe extern "C" fn ask(host: *mut c_void, n: usize, ts: *const f64, out: *mut Deviation) {
-    // SAFETY: `host` is the bridge of `fit`, which waits for this call.
-    let bridge = unsafe { &mut *host.cast::<Bridge<'_>>() };
-    if n == 0 || bridge.panic.is_some() || bridge.fault.is_some() {
-        return;
-    }
-    bridge.fault = if n > MOST_PLACES {
-        Some(format!("it asks for {n} deviations at once"))
-    } else if ts.is_null() || out.is_null() {
-        Some("it asks for deviations by a null pointer".to_owned())
-    } else if !ts.is_aligned() || !out.is_aligned() {
-        Some("it asks for deviations by a pointer that is not aligned".to_owned())
-    } else {
-        None
-    };
-    if bridge.fault.is_some() {
-        return;
-    }
-    // SAFETY: the plugin vouches for `n` places to read and to write. The latter may be fresh memory, so they are
-    // filled before they are borrowed.
-    let (ts, out) = unsafe {
-        for index in 0..n {
-            out.add(index).write(Deviation::default());
-        }
-        (raw::slice(ts, n), std::slice::from_raw_parts_mut(out, n))
-    };
-    let of_plugin = FloatMode::now();
-    bridge.mode.restore();
-    let call = AssertUnwindSafe(|| (bridge.deviation)(ts, out));
-    bridge.panic = catch_unwind(call).err();
-    of_plugin.restore();
 }

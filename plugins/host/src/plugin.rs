@@ -11,7 +11,7 @@ use crate::described::{Described, FunctionTable, is_name};
 use crate::judge::judge;
 #[cfg(not(target_family = "wasm"))]
 use crate::library::open_library;
-use crate::{PluginFault, Reason};
+use crate::{Isolation, PluginFault, Reason};
 
 /// A checked plugin. Cheap to clone; may be used from any thread.
 #[derive(Clone, Debug)]
@@ -60,6 +60,24 @@ impl Plugin {
     /// # Errors
     /// If the file is not a plugin for this version of the contract.
     pub fn open(path: &Path) -> Result<Plugin, PluginFault> {
+        Self::open_with(path, open_library)
+    }
+
+    /// As [`Plugin::open`], in a process of its own if there is `isolation`.
+    ///
+    /// # Errors
+    /// As [`Plugin::open`], and if it does not survive that, or does not return in time.
+    pub fn open_in(path: &Path, isolation: Option<&Isolation>) -> Result<Plugin, PluginFault> {
+        match isolation {
+            Some(isolation) => Self::open_with(path, |name, path| isolation.open(name, path)),
+            None => Self::open(path),
+        }
+    }
+
+    fn open_with(
+        path: &Path,
+        open: impl FnOnce(&str, &Path) -> Result<Plugin, Reason>,
+    ) -> Result<Plugin, PluginFault> {
         let name = name_of(path);
         let fault = |reason| PluginFault {
             plugin: name.unwrap_or("?").to_owned(),
@@ -69,7 +87,7 @@ impl Plugin {
         let Some(name) = name else {
             return Err(fault(Reason::FileName { pattern: file_name("<name>") }));
         };
-        open_library(name, path).map_err(fault)
+        open(name, path).map_err(fault)
     }
 
     /// Its name, as a machine file has it.
@@ -89,9 +107,11 @@ impl Plugin {
 
     /// What it does.
     pub fn kind(&self) -> PluginKind {
-        match self.table {
+        match &self.table {
             FunctionTable::Dialect(_) => PluginKind::Dialect,
             FunctionTable::Model(_) => PluginKind::ErrorModel,
+            #[cfg(unix)]
+            FunctionTable::Isolated(library) => library.kind,
         }
     }
 

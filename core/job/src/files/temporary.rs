@@ -72,6 +72,8 @@ impl Temporary {
         }
         let file = abandoned::claimed(|| builder.tempfile_in(folder))?;
         live.insert(file.path().to_owned());
+        #[cfg(unix)]
+        post_host::delete_on_crash(file.path());
         Ok(Self { file: Some(file) })
     }
 
@@ -91,6 +93,8 @@ impl Temporary {
     pub fn persist(&mut self, live: &mut LivePaths, target: &Path) -> io::Result<()> {
         let file = self.file.take().ok_or(io::ErrorKind::NotFound)?;
         live.remove(file.path());
+        #[cfg(unix)]
+        post_host::keep_on_crash(file.path());
         // The error holds the file, which is deleted with it; its name would only puzzle.
         let named = file.persist(target).map(drop);
         named.map_err(|fault| match fault.error.raw_os_error() {
@@ -105,6 +109,8 @@ impl Drop for Temporary {
         if let Some(file) = self.file.take() {
             let mut live = live();
             live.remove(file.path());
+            #[cfg(unix)]
+            post_host::keep_on_crash(file.path());
             drop(file);
         }
     }

@@ -4,6 +4,7 @@
 
 #include <fenv.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,91 @@ static uint32_t words;
 static void *ends_it(void *nothing) {
     exit(0);
     return nothing;
+}
+
+static void *goes_on(void *nothing) {
+    for (;;)
+        usleep(1000);
+    return nothing;
+}
+
+static volatile int sum;
+
+static int deep(volatile char *above) {
+    volatile char frame[4096];
+    frame[0] = *above;
+    return deep(frame) + frame[0];
+}
+
+/* What only a process of its own survives; `at` is the event. */
+static void dies(size_t at) {
+    (void)at;
+#if defined FAULT_LATER
+    if (at < 2)
+        return;
+#endif
+#if defined FAULT_SEGV || defined FAULT_LATER
+    *(volatile int *)8 = 1;
+#endif
+#ifdef FAULT_ABORT
+    abort();
+#endif
+#ifdef FAULT_DIVIDES
+    raise(SIGFPE);
+#endif
+#ifdef FAULT_DEEP
+    sum = deep((volatile char *)&sum);
+#endif
+#ifdef FAULT_EXITS_AT_ONCE
+    _exit(0);
+#endif
+#ifdef FAULT_LOOPS
+    for (;;)
+        sum++;
+#endif
+#ifdef FAULT_SLEEPS
+    sigset_t all;
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, NULL);
+    for (;;)
+        pause();
+#endif
+#ifdef FAULT_EATS
+    for (;;) {
+        char *block = malloc(1 << 26);
+        memset(block, 1, 1 << 26);
+    }
+#endif
+#ifdef FAULT_FORKS
+    if (at == 0 && fork() < 0)
+        abort();
+#endif
+#ifdef FAULT_FORKS_AGAIN
+    if (fork() < 0)
+        return;
+#endif
+#ifdef FAULT_FORKS_AND_DIES
+    if (fork() == 0)
+        for (;;)
+            pause();
+    abort();
+#endif
+#ifdef FAULT_CLOSES
+    for (int file = 3; file < 1024; file++)
+        close(file);
+#endif
+#ifdef FAULT_CLOSES_ALL
+    for (int file = 0; file < 1024; file++)
+        close(file);
+#endif
+#ifdef FAULT_SCRIBBLES
+    for (int file = 3; file < 64; file++)
+        if (write(file, "ten bytes.", 10) < 0)
+            continue;
+#endif
+#ifdef FAULT_KILLS_ITSELF
+    raise(SIGKILL);
+#endif
 }
 
 static void ends_it_well(void) {
@@ -31,6 +117,9 @@ static void disturb(void) {
 __attribute__((constructor)) static void constructor(void) {
 #ifdef FAULT_EXIT_LOAD
     exit(0);
+#endif
+#ifdef FAULT_ABORT_LOAD
+    abort();
 #endif
 #ifdef FAULT_DISTURB
     disturb();
@@ -66,6 +155,10 @@ static void *open_(const PostSetup *setup, const PostSink *error) {
     pthread_t thread;
     pthread_create(&thread, NULL, ends_it, NULL);
     pthread_join(thread, NULL);
+#endif
+#ifdef FAULT_THREAD_GOES_ON
+    pthread_t other;
+    pthread_create(&other, NULL, goes_on, NULL);
 #endif
     return &context;
 }
@@ -150,6 +243,7 @@ static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSin
 #endif
     uint64_t end = 0;
     for (size_t i = 0; i < n; i++) {
+        dies(i);
         size_t len = length ? length : strlen(text);
         out->write(out->ctx, (const uint8_t *)text, len);
         end += len;
@@ -183,6 +277,10 @@ static void last_error(void *ctx, const PostSink *out) {
 
 static void close_(void *ctx) {
     (void)ctx;
+#ifdef FAULT_CLOSE_LOOPS
+    for (;;)
+        sum++;
+#endif
 }
 
 static int32_t vocabulary(void *ctx, void *host, PostEmitWord emit) {

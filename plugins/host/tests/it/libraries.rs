@@ -359,7 +359,7 @@ fn a_system_library_is_refused() {
 #[test]
 fn a_name_is_looked_for_in_the_folders_and_then_among_the_linked_in() {
     let linked = vec![stock("fanuc").into()];
-    let mut finder = Finder { folders: Vec::new(), linked };
+    let mut finder = Finder { linked, ..Finder::default() };
     assert_eq!(finder.find("fanuc").unwrap().path(), None);
     let fault = finder.find("fanuk").unwrap_err();
     assert_eq!(fault.to_string(), "plugin `fanuk`: there is no such plugin");

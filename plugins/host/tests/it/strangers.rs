@@ -300,8 +300,11 @@ fn a_library_for_another_processor_is_refused_by_its_name() {
 fn what_stands_in_a_named_folder_is_never_passed_over() {
     let folder = tempfile::tempdir().unwrap();
     let linked = post_stock::plugin("fanuc").unwrap();
-    let finder =
-        |place: &Path| Finder { folders: vec![place.to_owned()], linked: vec![linked.into()] };
+    let finder = |place: &Path| Finder {
+        folders: vec![place.to_owned()],
+        linked: vec![linked.into()],
+        ..Finder::default()
+    };
     let place = |name: &str| {
         let place = folder.path().join(name);
         fs::create_dir(&place).unwrap();
@@ -345,6 +348,7 @@ fn all_plugins_are_listed_without_being_opened() {
     let finder = Finder {
         folders: vec![folder.path().to_owned()],
         linked: linked.map(LinkedPlugin::from).to_vec(),
+        ..Finder::default()
     };
     let listed = finder.list().unwrap();
     let rows: Vec<(&str, bool, bool)> =

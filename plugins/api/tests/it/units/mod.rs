@@ -2,6 +2,7 @@
 //! that stand in them.
 #![allow(dead_code, reason = "tests do not use all of a file")]
 
+mod batch_bytes;
 mod deviation;
 mod raw_event;
 mod raw_setup;

@@ -1,0 +1,109 @@
+//! A library that is open in processes of its own.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::Limits;
+use super::message::Description;
+use super::process::Process;
+use crate::call::LoadedLibrary;
+use crate::described::FunctionTable;
+use crate::judge::{judge_name, judge_options};
+use crate::library_file::LibraryFile;
+use crate::shown::sentence;
+use crate::{Plugin, PluginKind, Reason};
+
+/// Processes that wait for the next program, at most.
+const MOST_IDLE: usize = 8;
+
+/// A library, and its processes that nobody uses now.
+#[derive(Debug)]
+pub(crate) struct IsolatedLibrary {
+    pub(crate) kind: PluginKind,
+    path: PathBuf,
+    hash: String,
+    limits: Limits,
+    idle: Mutex<Vec<Process>>,
+}
+
+/// Opens the library whose file was looked at.
+pub(crate) fn open(
+    name: &str,
+    path: &Path,
+    file: LibraryFile,
+    limits: Limits,
+) -> Result<Plugin, Reason> {
+    let (process, told) = started(&file.path, limits)?;
+    if told.hash != file.hash || !file.is_unchanged() {
+        let message = "its file was changed while it was opened".to_owned();
+        return Err(Reason::Open { message });
+    }
+    let version = judge_name("version", &told.version)?.to_owned();
+    let about = sentence(&told.about);
+    let options = judge_options(told.options.into_iter().map(Ok).collect())?;
+    let kind = match told.is_model {
+        true => PluginKind::ErrorModel,
+        false => PluginKind::Dialect,
+    };
+    let library = IsolatedLibrary {
+        kind,
+        path: file.path.clone(),
+        hash: file.hash.clone(),
+        limits,
+        idle: Mutex::new(vec![process]),
+    };
+    let loaded = LoadedLibrary { name: name.to_owned(), path: path.to_owned() };
+    Ok(Plugin {
+        name: name.to_owned(),
+        version,
+        about,
+        table: FunctionTable::Isolated(Arc::new(library)),
+        linked: None,
+        library: Some(Box::leak(Box::new(loaded))),
+        hash: Some(file.hash),
+        options,
+    })
+}
+
+/// A process that has opened the library, and what that is.
+fn started(path: &Path, limits: Limits) -> Result<(Process, Description), Reason> {
+    let cannot = |error: io::Error| Reason::Open {
+        message: format!(
+            "no process of its own can be started: {error} (--no-isolate does without)"
+        ),
+    };
+    let mut process = Process::start(path, limits).map_err(cannot)?;
+    let mut left = limits.call;
+    let told: Result<Result<Description, Reason>, String> = process.answer("opening", &mut left);
+    let told = told.map_err(|message| Reason::Nonsense { message })??;
+    Ok((process, told))
+}
+
+impl IsolatedLibrary {
+    /// A process that serves nobody.
+    pub(crate) fn process(&self) -> Result<Process, Reason> {
+        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        if let Some(process) = idle {
+            return Ok(process);
+        }
+        let (process, told) = started(&self.path, self.limits)?;
+        if told.hash != self.hash {
+            let message = "it is open already, and its file was changed since".to_owned();
+            return Err(Reason::Open { message });
+        }
+        Ok(process)
+    }
+
+    /// Takes a process back, for the next program.
+    pub(crate) fn take_back(&self, process: Process) {
+        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+        if process.is_alive() && idle.len() < MOST_IDLE {
+            idle.push(process);
+        }
+    }
+
+    pub(crate) fn limits(&self) -> Limits {
+        self.limits
+    }
+}

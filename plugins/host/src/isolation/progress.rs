@@ -1,0 +1,92 @@
+//! Where the events of a batch end, in memory that two processes share: when the one that writes is no more, the other
+//! sees how far it came.
+
+#![allow(unsafe_code)]
+
+use std::io;
+use std::os::fd::{AsFd, OwnedFd};
+use std::ptr::NonNull;
+
+use rustix::mm::{MapFlags, ProtFlags, mmap, munmap};
+
+/// Events of which the end is shared; of the rest of a longer batch it is not known.
+const EVENTS: usize = 1 << 16;
+
+const BYTES: usize = EVENTS * size_of::<u64>();
+
+/// The shared memory.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    ends: NonNull<u64>,
+}
+
+// SAFETY: the memory belongs to the process and not to a thread, and is written through `&mut` alone.
+unsafe impl Send for Progress {}
+
+impl Progress {
+    /// Memory of its own, and the file by which another process shares it.
+    pub(crate) fn new() -> io::Result<(Self, OwnedFd)> {
+        let file = file()?;
+        rustix::fs::ftruncate(&file, BYTES as u64)?;
+        Ok((Self::of(&file)?, file))
+    }
+
+    /// The memory behind `file`, which must have been made by [`Progress::new`].
+    pub(crate) fn of(file: impl AsFd) -> io::Result<Self> {
+        if rustix::fs::fstat(&file)?.st_size as usize != BYTES {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        let (protection, shared) = (ProtFlags::READ | ProtFlags::WRITE, MapFlags::SHARED);
+        // SAFETY: the system chooses a place where nothing is.
+        let ends = unsafe { mmap(std::ptr::null_mut(), BYTES, protection, shared, file, 0) }?;
+        let ends = NonNull::new(ends.cast()).ok_or(io::ErrorKind::OutOfMemory)?;
+        Ok(Self { ends })
+    }
+
+    /// Room for the ends of `count` events, none of them told; none if there are too many.
+    pub(crate) fn room(&mut self, count: usize) -> Option<&mut [u64]> {
+        if count > EVENTS {
+            return None;
+        }
+        // SAFETY: so long, aligned, and not written by the other process: one of them waits for the other.
+        let room = unsafe { std::slice::from_raw_parts_mut(self.ends.as_ptr(), count) };
+        room.fill(u64::MAX);
+        Some(room)
+    }
+
+    /// How many of `count` events were told to be written.
+    pub(crate) fn told(&self, count: usize) -> usize {
+        let told = |index: &usize| {
+            // SAFETY: within the memory. The other process may write still, so it is read as it is.
+            unsafe { self.ends.add(*index).as_ptr().read_volatile() != u64::MAX }
+        };
+        (0..count.min(EVENTS)).take_while(told).count()
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        // SAFETY: mapped so long, and nothing borrows it any more. If it stays it is but not used again.
+        let _ = unsafe { munmap(self.ends.as_ptr().cast(), BYTES) };
+    }
+}
+
+/// A file in memory that has no name.
+#[cfg(any(target_os = "linux", target_os = "android", target_os = "freebsd"))]
+fn file() -> io::Result<OwnedFd> {
+    Ok(rustix::fs::memfd_create("post", rustix::fs::MemfdFlags::CLOEXEC)?)
+}
+
+/// A file in memory whose name is taken away at once.
+#[cfg(not(any(target_os = "linux", target_os = "android", target_os = "freebsd")))]
+fn file() -> io::Result<OwnedFd> {
+    use rustix::fs::Mode;
+    use rustix::shm::{OFlags, open, unlink};
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let name = format!("/post-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+    let file = open(&*name, OFlags::CREATE | OFlags::EXCL | OFlags::RDWR, Mode::RUSR | Mode::WUSR)?;
+    unlink(&*name)?;
+    Ok(file)
+}

@@ -113,7 +113,7 @@ class Machine:
         self._native = native
         self._loading = loading
         self._axes = tuple(
-            Axis(name, rotary, carries_part, unit, travel)
+            Axis(name, rotary, carries_part, unit, None if travel is None else (travel[0], travel[1]))
             for name, rotary, carries_part, unit, travel in native.axes()
         )
 

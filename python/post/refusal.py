@@ -56,9 +56,11 @@ def diagnostics(told: Iterable[Told]) -> tuple[Diagnostic, ...]:
     """Findings as Rust tells them, in words of Python."""
 
     def finding(fields: Told) -> Diagnostic:
-        severity, code, message, help, *place = fields
+        severity, code, message, help, file, *place = fields
         help = None if help is None else as_arguments(help)
-        return Diagnostic(severity, code, as_arguments(message), help, *place)  # type: ignore[arg-type]
+        # What is set over the machine file is a text of its own.
+        file = "set" if file == "--set" else file
+        return Diagnostic(severity, code, as_arguments(message), help, file, *place)  # type: ignore[arg-type]
 
     return tuple(finding(fields) for fields in told)
 

@@ -108,8 +108,9 @@ impl Study {
         told: Option<Py<PyAny>>,
     ) -> PyResult<()> {
         let mut looks = ProgressCallback { told, fault: None };
-        let done = self
-            .with(py, |_, jobs| jobs.run(threads, &mut |done, refused| looks.look(done, refused)));
+        let done = self.with(py, |stop, jobs| {
+            jobs.run(threads, &mut |done, refused| !stop() && looks.look(done, refused))
+        });
         looks.heard()?;
         done.map(drop)
     }
@@ -178,7 +179,7 @@ pub fn run_part(
     let options = options::told(options);
     let outcomes = apart(py, |stop| {
         let part = StudyPart::new(stop, lines, &options, files, machines)?;
-        part.run(threads, &mut |done, refused| looks.look(done, refused))
+        part.run(threads, &mut |done, refused| !stop() && looks.look(done, refused))
     });
     looks.heard()?;
     Ok(outcomes?.unwrap_or_default())

@@ -125,7 +125,7 @@ def test_ray_gives_the_same_bytes(room: Path, plain: post.Study) -> None:
 
 def test_the_example_runs(room: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (Path(__file__).parents[1] / "README.md").read_text()
-    example = text.split("```python\n")[2].split("```")[0]
+    example = text.split("```python\n")[-1].split("```")[0]
     exec(compile(example, "README.md", "exec"), {})
     assert "out-of-reach" in capsys.readouterr().out
     assert (room / "part.parquet").read_bytes().startswith(b"PAR1")

@@ -136,17 +136,21 @@ pub fn predict(
     let (machine, period) = (&control.counted, asked.period());
     let stages = Stages::new(machine, period, path)?;
     let mut stream = SetPointStream::new(name, machine, stages);
-    let mut trajectory = Trajectory::new(name, run, machine, period, watch.sees_blocks());
+    let trajectory = Trajectory::new(name, run, machine, period, watch.sees_blocks());
+    let mut trajectory = trajectory.stoppable(asked.session);
     let mut progress = asked.session.progress(Some(length));
     let beside = asked.threads > NonZeroUsize::MIN;
     thread::scope(|scope| {
         let mut work = Work::start(scope, &mut trajectory, beside.then_some(TOGETHER));
         let mut batch = Vec::new();
         while work.next(&mut batch) {
-            asked.session.go_on().map_err(unreadable)?;
             progress.some_records(batch.len() as u64, || position.get());
-            batch.iter_mut().try_for_each(|news| stream.take(news, watch))?;
+            for news in &mut batch {
+                asked.session.go_on().map_err(unreadable)?;
+                stream.take(news, watch)?;
+            }
         }
+        asked.session.go_on().map_err(unreadable)?;
         Ok::<(), Failure>(())
     })?;
     progress.finish();

@@ -14,6 +14,7 @@ use post_readback::{BlockEffect, MachineState, ProgramEvent, ProgramRun};
 use super::times::TaskKind;
 use crate::beside::Maker;
 use crate::nc_program::RunningProgram;
+use crate::session::Session;
 use crate::text::number;
 
 /// Set-points of a batch.
@@ -66,6 +67,8 @@ pub struct Trajectory<'a> {
     /// Somebody wants to know what blocks do.
     tells_blocks: bool,
     over: bool,
+    /// The run that it is made for, which may end it; none: nobody does.
+    session: Option<Session>,
 }
 
 impl<'a> Trajectory<'a> {
@@ -95,7 +98,17 @@ impl<'a> Trajectory<'a> {
             times: Vec::new(),
             tells_blocks,
             over: false,
+            session: None,
         }
+    }
+
+    /// The same for a run that may end it: nothing more is made then.
+    pub fn stoppable(self, session: &Session) -> Self {
+        Self { session: Some(session.clone()), ..self }
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.session.as_ref().is_some_and(|session| session.go_on().is_err())
     }
 
     /// The program, and what was taken for granted on the way.
@@ -185,7 +198,7 @@ impl Maker for Trajectory<'_> {
                 _ => {}
             }
         }
-        while batch.len() < most && !self.over {
+        while batch.len() < most && !self.over && !self.is_stopped() {
             self.step(batch);
         }
         !batch.is_empty()

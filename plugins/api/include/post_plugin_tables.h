@@ -180,6 +180,9 @@
 #define POST_MEANING_JOINTS_NOW 202u
 #define POST_MEANING_STRAIGHT_MOVE 209u
 #define POST_MEANING_DIAMETER_OF_POSITIONS 210u
+#define POST_MEANING_TOOL_FRAME 211u
+#define POST_MEANING_OWN_TOOL_FRAME 212u
+#define POST_MEANING_TOOL_AND_FRAME 213u
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");

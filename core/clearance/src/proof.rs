@@ -69,6 +69,20 @@ pub struct PairResult {
     pub faults: u64,
 }
 
+impl PairResult {
+    /// Nothing is known yet.
+    fn new(bodies: [usize; 2]) -> Self {
+        Self {
+            bodies,
+            clear_by: f64::INFINITY,
+            nearest: (f64::INFINITY, 0),
+            fault: None,
+            worst: None,
+            faults: 0,
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Pair {
     /// Each sees the other body from the first or the second.
@@ -310,14 +324,7 @@ impl Pair {
             let (centre, radius) = of.shape.sphere();
             View::new(axes, from.link, of.link, centre, radius)
         };
-        let result = PairResult {
-            bodies,
-            clear_by: f64::INFINITY,
-            nearest: (f64::INFINITY, 0),
-            fault: None,
-            worst: None,
-            faults: 0,
-        };
+        let result = PairResult::new(bodies);
         let views = [view(one, other), view(other, one)];
         let nearer = usize::from(views[1].arms() < views[0].arms());
         Self {
@@ -445,11 +452,29 @@ impl Pair {
 
     /// Takes a motion on which a cutter goes where it has been: it is near behind it, or away; how many distances were computed.
     fn spare(&mut self, trial: &Trial<'_>, whole: Option<&Piece>, back: bool) -> u64 {
+        let computed = self.tell(trial, whole);
         self.forget();
-        let (true, Some(whole)) = (trial.yields, whole) else { return 0 };
+        let (true, Some(whole)) = (trial.yields, whole) else { return computed };
         let near = self.near_ends(trial, whole, true);
         self.beside.rapid(near, trial.motion.way.ends, back);
-        2
+        computed + 2
+    }
+
+    /// How near they come on a motion on which nothing need be kept is told with the others, but where they touch.
+    fn tell(&mut self, trial: &Trial<'_>, whole: Option<&Piece>) -> u64 {
+        let nearest = self.result.nearest;
+        let fresh = PairResult { nearest, ..PairResult::new(self.result.bodies) };
+        let told = std::mem::replace(&mut self.result, fresh);
+        let beside = self.beside;
+        let free = Trial { keep: ALLOWANCE, most: ALLOWANCE, yields: false, ..*trial };
+        let computed = self.take(&free, whole);
+        self.beside = beside;
+        let found = std::mem::replace(&mut self.result, told);
+        if found.faults == 0 {
+            self.result.clear_by = self.result.clear_by.min(found.clear_by);
+            self.result.nearest = found.nearest;
+        }
+        computed
     }
 
     /// Whether they are not proven to be apart by more than is to be kept where a motion begins and where it ends; `fresh`: what

@@ -6,7 +6,7 @@ use crate::ALLOWANCE;
 impl Proof {
     /// The distance that all pairs that `looks` wants keep from one another on a motion, mm: proven, and mostly no less than
     /// the truth by more than five in a hundred. 0 where two touch, or nothing is proven; none where no pair is looked at. A
-    /// cutter that is spared is as near to the stock as it is.
+    /// cutter that is spared is as near to the stock as it is, and where it is in it that is not told.
     ///
     /// What was found of a pair that is not near holds for later motions, so that most cost nothing. The results of
     /// [`Proof::results`] are none then.
@@ -32,7 +32,8 @@ impl Proof {
         let (mut nearest, mut clear_by) = (f64::INFINITY, f64::INFINITY);
         for pair in pairs {
             let [one, other] = pair.result.bodies.map(|place| &bodies[place]);
-            if looks(one, other) == Look::LeaveOut {
+            let look = looks(one, other);
+            if look == Look::LeaveOut {
                 pair.forget();
                 continue;
             }
@@ -40,7 +41,10 @@ impl Proof {
             (result.nearest, result.clear_by, result.faults) = ((nearest, 0), f64::INFINITY, 0);
             *distances += pair.take(&trial, whole.as_ref());
             let result = &mut pair.result;
-            clear_by = clear_by.min(if result.faults > 0 { 0.0 } else { result.clear_by });
+            let touches = result.faults > 0;
+            if !touches || look == Look::Prove {
+                clear_by = clear_by.min(if touches { 0.0 } else { result.clear_by });
+            }
             nearest = nearest.min(result.nearest.0);
             // Of who was not looked at closely it is known that the others were nearer.
             result.nearest.0 = result.clear_by;

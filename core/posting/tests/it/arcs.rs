@@ -392,7 +392,7 @@ fn real_files_have_fewer_blocks() {
         ("nx_HumMan_cutcom.clsf", "vmc", &[], [6026, 566, 140]),
         ("creo3x_MichaHofft_profilfraesen_2.ncl", "head-head", &[], [312, 52, 20]),
         ("creo3x_MichaHofft_schruppen_1.ncl", "head-head", &[], [9582, 5590, 419]),
-        ("camworks_neMoguta_UniSource.clt", "ac-trunnion", &[], [1447, 376, 72]),
+        ("camworks_neMoguta_UniSource.clt", "ac-trunnion", &[], [1444, 373, 72]),
         ("swcam_aamorim_Interface-glue.clt", "ac-trunnion", &[], [4012, 2125, 30]),
         ("swcam_aamorim_Teste-Metrologia.apt", "ac-trunnion", &[], [3872, 479, 65]),
         ("swcam_aamorim_basemach.apt", "vmc", &[(-170.0, -75.0, 0.0)], [4408, 2137, 304]),

@@ -28,7 +28,7 @@ def test_a_machine_comes_back_from_freecads_file(name: str, tmp_path: Path) -> N
     there, back = tmp_path / f"{name}.fcm", tmp_path / f"{name}.toml"
     run = converted(MACHINES / f"{name}.toml", there)
     assert run.returncode == 0, run.stderr
-    run = converted(there, back, "--dialect", "linuxcnc")
+    run = converted(there, back)  # as the page types it: the remarks name the dialect
     assert run.returncode == 0, run.stderr
     compared = subprocess.run(
         [COMMAND, "check", back, "--nominal", MACHINES / f"{name}.toml"], capture_output=True, text=True
@@ -106,6 +106,18 @@ def test_units_senses_and_the_order_of_a_table(tmp_path: Path) -> None:
         (("kinematics",), {"base_frame": {"origin": [1, 0, 0]}}, "base_frame"),
         (("units",), "cubits", "metric or imperial"),
         (("axes",), {}, "no axes"),
+        (("axes",), ["X"], "no JSON object"),
+        (("axes", "C", "role"), "foo", "its role 'foo' is not table_rotary or head_rotary"),
+        (("axes", "C", "role"), "head_linear", "its role 'head_linear' is not"),
+        (("axes", "A", "role"), "head_rotary", "but C, table_rotary, carries it"),
+        (("axes", "X", "limits"), {"min": float("nan"), "max": 5}, "limits.min: nan"),
+        (("axes", "X", "limits"), {"min": 0, "max": 1e300}, "limits.max: 1e+300"),
+        (("axes", "X", "max_velocity"), "fast", "max_velocity: 'fast' is no number"),
+        (("axes", "X", "max_velocity"), -5, "max_velocity -5 is negative"),
+        (("axes", "X", "joint"), [[0, 0], [1, 0, 0]], "[0, 0] are not three numbers"),
+        (("name",), "M\nCV", "cannot be printed"),
+        (("kinematics",), [], "no JSON object"),
+        (("toolheads",), "one", "no list"),
     ],
 )
 def test_what_freecads_file_leaves_open_is_refused(
@@ -121,4 +133,66 @@ def test_what_freecads_file_leaves_open_is_refused(
     (tmp_path / "mcv.fcm").write_text(json.dumps(data))
     run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml")
     assert run.returncode == 1 and told in run.stderr
-    assert not (tmp_path / "mcv.toml").exists()
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["mcv.fcm"]
+
+
+def test_a_machine_that_post_check_refuses_is_not_written(tmp_path: Path) -> None:
+    """The one that stood there stays, byte by byte, and nothing beside it."""
+    (tmp_path / "mcv.fcm").write_text(json.dumps(freecad_machine()))
+    (tmp_path / "mcv.toml").write_text("# the good one\n")
+    run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml", "--dialect", "klingon")
+    assert run.returncode == 1 and "nothing was written" in run.stderr and "mcv.toml" in run.stderr
+    assert ".mcv." not in run.stderr  # the name under which it was checked is nobody's concern
+    assert (tmp_path / "mcv.toml").read_text() == "# the good one\n"
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["mcv.fcm", "mcv.toml"]
+
+
+@pytest.mark.parametrize("mark", [b"", b"\xef\xbb\xbf"])
+def test_a_byte_order_mark_is_taken_and_a_speed_of_zero_told(mark: bytes, tmp_path: Path) -> None:
+    data = freecad_machine()
+    machine = data["machine"]
+    assert isinstance(machine, dict)
+    machine["axes"]["Y"]["max_velocity"] = 0
+    (tmp_path / "mcv.fcm").write_bytes(mark + json.dumps(data).encode())
+    run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml")
+    assert run.returncode == 0 and "axis Y: its max_velocity is 0" in run.stderr
+    assert (tmp_path / "mcv.toml").read_text().count("max_feed") == 4
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib is of Python 3.11")
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("lathe-xzc-radial", "[tool] axis = [1, 0, 0]"),
+        ("lathe-xz", "[word]"),
+        ("linear-delta", "[leg]"),
+        ("tricept", "[formulas], [drive]"),
+        ("head-change", "[head]"),
+        ("hmc-b-pallet", "axis B"),
+    ],
+)
+def test_a_law_that_freecads_file_cannot_hold_is_refused(name: str, told: str, tmp_path: Path) -> None:
+    run = converted(MACHINES / f"{name}.toml", tmp_path / "out.fcm")
+    assert run.returncode == 1 and told in run.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib is of Python 3.11")
+def test_a_table_whose_c_carries_another_axis_is_refused(tmp_path: Path) -> None:
+    """FreeCAD turns about Z first: the part would stand elsewhere, at the same angles."""
+    text = (MACHINES / "ac-trunnion.toml").read_text()
+    (tmp_path / "ca.toml").write_text(text.replace("C' A'", "A' C'"))
+    assert "A' C'" in (tmp_path / "ca.toml").read_text()
+    run = converted(tmp_path / "ca.toml", tmp_path / "ca.fcm")
+    assert run.returncode == 1 and "turns a table about Z first" in run.stderr
+    assert not (tmp_path / "ca.fcm").exists()
+
+
+@pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib is of Python 3.11")
+def test_what_else_is_lost_is_told_by_its_name(tmp_path: Path) -> None:
+    run = converted(MACHINES / "vmc-a.toml", tmp_path / "vmc-a.fcm")
+    assert run.returncode == 0
+    told = next(line for line in run.stderr.splitlines() if "not in FreeCAD's file" in line)
+    for lost in ("[workpiece]", "[accuracy]", "[axis.A] cyclic", "[axis.A] range", "[axis.X] max_accel"):
+        assert lost in told
+    assert "max_feed" not in told and "gauge" not in told

@@ -549,6 +549,29 @@ def posted(asked, others, cl_file, program, report):
     print(run.stdout + run.stderr)
 
 
+class Beside:
+    """The CL file beside a program: that of a job which is refused goes, and the one of before comes back."""
+
+    def __init__(self, path, text):
+        self.path, self.text, self.before = path, text, None
+
+    def __enter__(self):
+        if os.path.exists(self.path):
+            with open(self.path, "rb") as file:
+                self.before = file.read()
+        with open(self.path, "w", encoding="utf-8") as file:
+            file.write(self.text)
+
+    def __exit__(self, kind, fault, trace):
+        if kind is None:
+            return
+        if self.before is None:
+            os.remove(self.path)
+        else:
+            with open(self.path, "wb") as file:
+                file.write(self.before)
+
+
 def told(text):
     """A refusal in a window of its own, where there are windows."""
     try:
@@ -590,8 +613,7 @@ def exported(objectslist, filename, argstring):
         if os.path.splitext(filename)[1] == ".cls":
             raise Refused(f"{filename}: the program would be written over its CL file: give it another ending")
         cl_file = base + ".cls"
-        with open(cl_file, "w", encoding="utf-8") as file:
-            file.write(text)
-        posted(asked, others, cl_file, program, None if asked.no_report else base + ".html")
+        with Beside(cl_file, text):
+            posted(asked, others, cl_file, program, None if asked.no_report else base + ".html")
         with open(program, encoding="utf-8", errors="surrogateescape", newline="") as file:
             return file.read()

@@ -256,6 +256,25 @@ def test_a_tap_goes_by_its_pitch(processor: ModuleType, tmp_path: Path) -> None:
     assert re.search(r"G33\.1 .*K1\.25", text), text
 
 
+def test_a_refused_job_leaves_the_files_of_the_one_before(processor: ModuleType, tmp_path: Path) -> None:
+    """Program, CL file and report belong together: a new CL file beside an old program would be another part's."""
+    far: Commands = [("G0", {"X": 5000.0, "Y": 0.0, "Z": 10.0}), ("G1", {"Z": -1.0, "F": 2.0})]
+    arguments = f"--machine {MACHINES / 'vmc.toml'} --command {COMMAND} --tool-length 100 --mount 0,0,0"
+
+    def files() -> dict[str, bytes]:
+        return {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    with pytest.raises(processor.Refused, match="over-travel"):
+        processor.export([controller(), item("Far", far)], str(tmp_path / "part.nc"), arguments)
+    assert files() == {}
+    processor.export([controller(), item("Face", START)], str(tmp_path / "part.nc"), arguments)
+    before = files()
+    assert sorted(before) == ["part.cls", "part.html", "part.nc"]
+    with pytest.raises(processor.Refused, match="over-travel"):
+        processor.export([controller(), item("Far", far)], str(tmp_path / "part.nc"), arguments)
+    assert files() == before
+
+
 def test_a_refusal_of_post_is_the_refusal_of_the_job(processor: ModuleType, tmp_path: Path) -> None:
     far: Commands = [("G0", {"X": 5000.0, "Y": 0.0, "Z": 10.0}), ("G1", {"Z": -1.0, "F": 2.0})]
     arguments = f"--machine {MACHINES / 'vmc.toml'} --command {COMMAND} --tool-length 100 --mount 0,0,0"

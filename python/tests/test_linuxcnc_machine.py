@@ -9,6 +9,7 @@ import ctypes
 import math
 import os
 import random
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -122,6 +123,33 @@ def test_letters_may_be_said_together_or_one_by_one(tmp_path: Path) -> None:
     together = written(configuration(name), tmp_path / "one.toml", *said, "--reversed", "BC").read_text()
     apart = written(configuration(name), tmp_path / "two.toml", *said, "--reversed", "B", "--reversed", "C").read_text()
     assert together == apart and apart.count("reversed  = true") == 2
+
+
+def test_an_axis_turns_the_part_or_the_tool(tmp_path: Path) -> None:
+    """The machine file had two tables of one name."""
+    run = from_ini(mill(tmp_path), "-o", tmp_path / "mill.toml", "--table", "A=0,0,1", "--head", "A=0,0,1")
+    assert run.returncode == 1 and "name A more than once" in run.stderr
+    assert not (tmp_path / "mill.toml").exists()
+
+
+@pytest.mark.parametrize("value", ["0", "-5", "nan"])
+@pytest.mark.parametrize("key", ["MAX_VELOCITY", "MAX_ACCELERATION"])
+def test_a_speed_that_moves_nothing_is_refused_by_its_line(key: str, value: str, tmp_path: Path) -> None:
+    ini = mill(tmp_path)
+    text = re.sub(rf"(\[AXIS_X\][^\[]*?{key} *= *)\S+", rf"\g<1>{value}", ini.read_text(), count=1)
+    if text == ini.read_text():
+        text += f"\n[AXIS_X]\n{key} = {value}\n"
+    ini.write_text(text)
+    run = from_ini(ini, "-o", tmp_path / "mill.toml")
+    assert run.returncode == 1 and re.search(rf"mill\.ini:\d+: \[AXIS_X\] {key}", run.stderr), run.stderr
+    assert not (tmp_path / "mill.toml").exists()
+
+
+def test_a_byte_order_mark_hides_no_section(tmp_path: Path) -> None:
+    ini = mill(tmp_path)
+    plain = written(ini, tmp_path / "plain.toml").read_text()
+    ini.write_bytes(b"\xef\xbb\xbf" + ini.read_bytes().lstrip())
+    assert written(ini, tmp_path / "marked.toml").read_text() == plain
 
 
 def test_a_hal_file_without_a_name_is_none(tmp_path: Path) -> None:

@@ -24,9 +24,12 @@ class Entry:
     def number(self) -> float:
         """The value as a number, in the units of the file."""
         try:
-            return float(self.text.split()[0])
+            value = float(self.text.split()[0])
         except (ValueError, IndexError):
             raise Refused(f"{self.place}: {self.text!r} is not a number") from None
+        if math.isnan(value):
+            raise Refused(f"{self.place}: {self.text!r} is not a number")
+        return value
 
 
 @dataclass
@@ -87,7 +90,7 @@ def _read_into(ini: Ini, path: Path, section: str, depth: int) -> str:
     if depth == 0:
         raise Refused(f"{path}: included {DEPTH} deep: does it include itself?")
     try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as fault:
         raise Refused(f"{path}: cannot be read: {fault.strerror}") from None
     number = 0

@@ -43,7 +43,13 @@ def _limits(ini: Ini, kins: Module, letter: str, *, joints: bool = True) -> Scal
         found = [ini.number(section, key) for section in sections]
         return [value * unit for value in found if value is not None]
 
-    speeds, accelerations = all_of("MAX_VELOCITY"), all_of("MAX_ACCELERATION")
+    def positive(key: str) -> list[float]:
+        for entry in (ini.first(section, key) for section in sections):
+            if entry and entry.number() <= 0:
+                raise Refused(f"{entry.place} = {entry.text}: {letter} cannot move so: say a number above 0")
+        return all_of(key)
+
+    speeds, accelerations = positive("MAX_VELOCITY"), positive("MAX_ACCELERATION")
     homes = [ini.number(section, "HOME") for section in sections[1:]]
     return Scale(
         least=max(all_of("MIN_LIMIT"), default=-UNLIMITED * 10),

@@ -116,7 +116,9 @@ def test_units_senses_and_the_order_of_a_table(tmp_path: Path) -> None:
         (("axes", "X", "max_velocity"), -5, "max_velocity -5 is negative"),
         (("axes", "X", "joint"), [[0, 0], [1, 0, 0]], "[0, 0] are not three numbers"),
         (("name",), "M\nCV", "cannot be printed"),
+        (("name",), 5, "not both are texts"),
         (("kinematics",), [], "no JSON object"),
+        (("toolheads",), [{"max_rpm": "a"}], "max_rpm: 'a' is no number"),
         (("toolheads",), "one", "no list"),
     ],
 )

@@ -53,9 +53,10 @@ def from_freecad(path, asked):
     rotary = any(axis.rotary for axis in axes.values())
     kept = GAUGE.search(notes)
     gauge_point = asked.gauge or gauge(",".join(kept.groups()) if kept else "0,0,0")
-    name = " ".join(
-        filter(None, (machine.get(key, other) for key, other in (("manufacturer", ""), ("name", path.stem))))
-    )
+    names = [machine.get("manufacturer") or "", machine.get("name") or path.stem]
+    if not all(isinstance(each, str) for each in names):
+        raise Refused(f"manufacturer and name {names}: not both are texts")
+    name = " ".join(filter(None, names))
     if not name.isprintable():
         raise Refused(f"name {name!r}: a character of it cannot be printed")
     lines = [

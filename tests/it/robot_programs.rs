@@ -340,7 +340,7 @@ fn tool_and_frame_of_straight_moves_are_those_of_the_machine_file() {
     let unset_tool = "the program does not set the frame of the tool (";
     let unset_base = "the program does not set the frame of poses (";
     // What is written in place of what; a line ahead of the last straight move where that is nothing.
-    let cases: [(&str, &str, &str, &str); 19] = [
+    let cases: [(&str, &str, &str, &str); 20] = [
         ("rapid", "fine,spindle;", "fine,other;", tool),
         ("rapid", "fine,spindle;", "fine,tool0;", tool),
         ("rapid", "fine,spindle;", "fine,spindle\\WObj:=fixture;", base),
@@ -358,7 +358,8 @@ fn tool_and_frame_of_straight_moves_are_those_of_the_machine_file() {
         ("krl", "", "BAS(#BASE,1)", base),
         ("krl", "", "$BASE={X 1,Y 0,Z 0,A 0,B 0,C 0}", base),
         ("krl", "", "BAS(#INITMOV,0)", unset_tool),
-        ("krl", "", "BAS(#VEL_CP,2)", ""),
+        ("krl", "", "BAS(#VEL_PTP,50)", ""),
+        ("krl", "BAS(#INITMOV,0)", "BAS(#VEL_CP,2)", "BAS(#VEL_CP) sets speeds"),
         ("urscript", "", "  set_tcp(p[0,0,0.1,0,0,0])", tool),
     ];
     for (dialect, file, begins) in [

@@ -395,6 +395,9 @@ fn a_fanuc_of_lathes_has_the_words_of_its_system() {
         wrong("T0101", "T0102", "register 2");
         wrong("T0101", "T0100", "without length compensation");
         wrong("S3000", "S3500", "the spindle turns");
+        // The limit of another system is a cycle here, or scaling.
+        let [limit, other] = if system == "A" { ["G50", "G92"] } else { ["G92", "G50"] };
+        wrong(&format!("{limit} S"), &format!("{other} S"), &format!("{other} is not run"));
         let cycle =
             ["G90", "G77", "G20"][["A", "B", "C"].iter().position(|s| *s == system).unwrap()];
         wrong("X44.000", &format!("{cycle} X44.000"), &format!("{cycle} is not run"));

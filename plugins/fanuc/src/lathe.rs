@@ -104,6 +104,7 @@ const OWN_A: &[(&str, Meaning)] = &[
     ("G90", M::NotFollowed),
     ("G91", M::NotFollowed),
     ("G92", M::NotFollowed),
+    ("G92 S", M::NotFollowed),
     ("G94", M::NotFollowed),
     ("G95", M::NotFollowed),
 ];
@@ -111,6 +112,7 @@ const OWN_A: &[(&str, Meaning)] = &[
 /// Words of system B alone.
 const OWN_B: &[(&str, Meaning)] = &[
     ("G33", M::Thread),
+    ("G50 S", M::NotFollowed),
     ("G70", M::NotFollowed),
     ("G71", M::NotFollowed),
     ("G77", M::NotFollowed),
@@ -125,6 +127,7 @@ const OWN_C: &[(&str, Meaning)] = &[
     ("G21", M::NotFollowed),
     ("G24", M::NotFollowed),
     ("G33", M::Thread),
+    ("G50 S", M::NotFollowed),
     ("G77", M::NotFollowed),
     ("G78", M::NotFollowed),
     ("G92", M::SetPosition),

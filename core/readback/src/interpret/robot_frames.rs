@@ -58,8 +58,13 @@ impl ControlState {
                 frames.base = Some(numbered("BASE_DATA"));
                 self.modal.unset &= !ModalGroup::BaseFrame.bit();
             }
-            "VEL_CP" | "VEL_PTP" | "ACC_CP" | "ACC_PTP" | "VEL_ROT" | "ACC_ROT" | "PTP_DAT"
-            | "CP_DAT" => {}
+            "VEL_PTP" | "ACC_CP" | "ACC_PTP" | "ACC_ROT" | "PTP_DAT" => {}
+            // KUKA's BAS.SRC sets $VEL.CP and its like in these.
+            "VEL_CP" | "VEL_ROT" | "CP_DAT" | "CP_PARAMS" => {
+                let message =
+                    format!("BAS({command}) sets speeds of straight moves: that is not followed");
+                return Err(self.refuse("nc-statement", message));
+            }
             _ => {
                 *frames = RobotFrames::default();
                 self.modal.unset |= self.lexicon.modes() & both;

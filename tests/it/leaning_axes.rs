@@ -83,3 +83,25 @@ fn other_posts_arcs_are_read_and_held_against_the_cl_file() {
         "{radii:?}"
     );
 }
+
+/// Ahead of the block in which the control begins to keep the tip X and Y would be words of slides, and those lean.
+#[test]
+fn the_tip_comes_to_its_first_point_where_a_slide_leans_and_the_control_keeps_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "name = \"leans\"\nchain = \"[w b X Z Y B (S) t]\"\ntool.gauge = [0, 0, 400]\n\
+                   control = { dialect = \"mazak\", tcp = \"control\" }\n\
+                   [axis.X]\nlinear = [1, 0, 0]\ntravel = [-1000, 1000]\n\
+                   [axis.Y]\nlinear = [-0.009, 1, 0]\ntravel = [-1000, 1000]\n\
+                   [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-1000, 1000]\n\
+                   [axis.B]\nrotary = [0, 1, 0]\npoint = [0, 0, 550]\ntravel = [-90, 90]\n";
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/16,-30,50,0,0,1\nFEDRAT/500,MMPM\n\
+              GOTO/16,-30,40,0,0,1\nGOTO/30,-20,40,0,0,1\nRAPID\nGOTO/30,-20,60,0,0,1\nFINI\n";
+    fs::write(folder.path().join("mine.toml"), machine).unwrap();
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let words =
+        ["-m", "mine.toml", "part.cls", "-o", "part.nc", "--tool-length", "100", "--verify"];
+    let run = post_in(folder.path(), &words);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    assert!(program.contains("G43.4 H1 X16.000 Y-30.000 Z"), "{program}");
+}

@@ -28,6 +28,9 @@ const TRIES: u32 = 8;
 /// Angles that differ by less are the same, radians; of directions, one less their cosine.
 const SAME: f64 = 1e-9;
 
+/// A slide leans from the coordinate that its word has under tool centre point control, mm a mm.
+const LEANS: f64 = 1e-9;
+
 /// The word of a plane along its normal.
 const DEPTH: usize = 2;
 
@@ -140,6 +143,17 @@ impl BlockStage<'_> {
             axis.joint.rotary && libm::fabs(axis.reading(*joint) * axis.unit()) > SAME
         });
         if turned && !self.tcp_still {
+            return true;
+        }
+        // A slide that leans takes the tip aside, which words of the tip do not.
+        let leans = machine.axes.iter().enumerate().any(|(place, axis)| {
+            let mut aside = placer.solver().chain().way_of(place, joints);
+            aside[axis_words::coordinate(&axis.name)] = 0.0;
+            matches!(axis.name.as_str(), "X" | "Y" | "Z")
+                && !axis.joint.rotary
+                && aside.norm() > LEANS
+        });
+        if leans {
             return true;
         }
         ToolAlignment::of(&node.target.axis, &way) != ToolAlignment::Along

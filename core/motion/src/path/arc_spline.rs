@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use super::round::{arm_and_height, on_arc};
 use super::spline::BSpline;
 
-/// Turn of a piece, radians: on a helix and a spiral height and radius are off by less than three millionths of what they
-/// change in a radian.
+/// Turn of a piece, radians: a helix is off in height by less than a hundred-thousandth of what that changes in a radian, a
+/// spiral along its way by less than a thousandth of what its radius changes.
 const PIECE: f64 = std::f64::consts::TAU / 72.0;
 
 impl BSpline {

@@ -113,9 +113,8 @@ pub(super) fn measured(
                 + (motion.turn - before.turn).amax() * LEVERS[0];
             if change > STEEPEST * way {
                 let message = format!(
-                    "the errors of {} change by {} between {} and {}: more than {STEEPEST} mm a mm is none of a machine",
+                    "the errors of {} change by {change:.4} mm between {} and {}: more than {STEEPEST} mm a mm is none of a machine",
                     axis.name,
-                    format_args!("{change:.4} mm"),
                     axis.reading(*last),
                     numbers[0]
                 );

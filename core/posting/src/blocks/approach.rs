@@ -146,12 +146,13 @@ impl BlockStage<'_> {
             return true;
         }
         // A slide that leans takes the tip aside, which words of the tip do not.
-        let leans = machine.axes.iter().enumerate().any(|(place, axis)| {
+        let mut slides = machine.axes.iter().enumerate().filter(|(_, axis)| {
+            !axis.joint.rotary && matches!(axis.name.as_str(), "X" | "Y" | "Z")
+        });
+        let leans = slides.any(|(place, axis)| {
             let mut aside = placer.solver().chain().way_of(place, joints);
             aside[axis_words::coordinate(&axis.name)] = 0.0;
-            matches!(axis.name.as_str(), "X" | "Y" | "Z")
-                && !axis.joint.rotary
-                && aside.norm() > LEANS
+            aside.norm() > LEANS
         });
         if leans {
             return true;

@@ -22,7 +22,10 @@ const WORLD: &str = "WOBJ0";
 impl ControlState {
     /// `$TOOL=TOOL_DATA[1]`, `$BASE=$NULLFRAME`, `set_tcp(..)`.
     pub(super) fn set_robot_frame(&mut self, group: ModalGroup, to: &[NcTerm]) {
-        let to = written(to);
+        self.robot_frame_is(group, written(to));
+    }
+
+    fn robot_frame_is(&mut self, group: ModalGroup, to: String) {
         match group {
             ModalGroup::ToolFrame => self.robot_frames.tool = Some(to),
             _ => self.robot_frames.base = Some(to),
@@ -42,22 +45,14 @@ impl ControlState {
             Some([NcTerm::Number(number)]) => Some(number.value),
             _ => None,
         };
-        let frames = &mut self.robot_frames;
-        let both = ModalGroup::ToolFrame.bit() | ModalGroup::BaseFrame.bit();
         let numbered = |list: &str| match number {
             Some(0.0) => "$NULLFRAME".to_owned(),
             Some(number) => format!("{list}[{number}]"),
             None => list.to_owned(),
         };
         match command.trim_start_matches('#') {
-            "TOOL" => {
-                frames.tool = Some(numbered("TOOL_DATA"));
-                self.modal.unset &= !ModalGroup::ToolFrame.bit();
-            }
-            "BASE" => {
-                frames.base = Some(numbered("BASE_DATA"));
-                self.modal.unset &= !ModalGroup::BaseFrame.bit();
-            }
+            "TOOL" => self.robot_frame_is(ModalGroup::ToolFrame, numbered("TOOL_DATA")),
+            "BASE" => self.robot_frame_is(ModalGroup::BaseFrame, numbered("BASE_DATA")),
             "VEL_PTP" | "ACC_CP" | "ACC_PTP" | "ACC_ROT" | "PTP_DAT" => {}
             // KUKA's BAS.SRC sets $VEL.CP and its like in these.
             "VEL_CP" | "VEL_ROT" | "CP_DAT" | "CP_PARAMS" => {
@@ -66,7 +61,8 @@ impl ControlState {
                 return Err(self.refuse("nc-statement", message));
             }
             _ => {
-                *frames = RobotFrames::default();
+                let both = ModalGroup::ToolFrame.bit() | ModalGroup::BaseFrame.bit();
+                self.robot_frames = RobotFrames::default();
                 self.modal.unset |= self.lexicon.modes() & both;
             }
         }

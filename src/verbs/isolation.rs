@@ -1,4 +1,4 @@
-//! How libraries of plugins run: flags that every verb has.
+//! How libraries of plugins run: flags of the verbs that open them.
 
 use std::time::Duration;
 
@@ -12,15 +12,15 @@ use post_job::session::Session;
 pub struct IsolationArguments {
     /// Runs libraries of plugins in this process, and not in one of their own each: one that crashes, hangs or ends the
     /// process then takes the command with it.
-    #[arg(long, global = true, conflicts_with_all = ["plugin_seconds", "plugin_memory"])]
+    #[arg(long, conflicts_with_all = ["plugin_seconds", "plugin_memory"])]
     no_isolate: bool,
 
     /// Seconds that a call into a library may take, 60 if it is not said; then its process is stopped.
-    #[arg(long, global = true, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     plugin_seconds: Option<Duration>,
 
     /// Memory that the process of a library may have, MiB, 2048 if it is not said.
-    #[arg(long, global = true, value_name = "MIB", value_parser = clap::value_parser!(u64).range(64..=1 << 24))]
+    #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(64..=1 << 24))]
     plugin_memory: Option<u64>,
 }
 
@@ -38,6 +38,23 @@ impl IsolationArguments {
         if limits != usual && session.isolation().is_some() {
             session.isolate(Isolation::new(limits));
         }
+    }
+}
+
+/// Arguments of a verb that opens plugins, and how their libraries run.
+#[derive(Debug, Args)]
+pub struct OpensPlugins<T: Args> {
+    #[command(flatten)]
+    arguments: T,
+    #[command(flatten)]
+    isolation: IsolationArguments,
+}
+
+impl<T: Args> OpensPlugins<T> {
+    /// The verb's own arguments, behind [`IsolationArguments::apply`].
+    pub fn applied(&self, session: &Session) -> &T {
+        self.isolation.apply(session);
+        &self.arguments
     }
 }
 

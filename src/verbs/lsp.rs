@@ -12,7 +12,7 @@ use post_lsp::Options;
 /// Serves an editor: faults, completion and explanations in machine files, axis values in CL files and programs.
 ///
 /// It is started by an editor and speaks the Language Server Protocol on standard input and output.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct LspArguments {
     /// The machine that CL files and programs are shown on, until the editor's setting post.machine names another.
     #[arg(short, long, value_name = "MACHINE")]
@@ -37,7 +37,7 @@ pub struct LspArguments {
 }
 
 /// Serves.
-pub fn run(session: &Session, arguments: LspArguments) -> Result<(), Failure> {
-    let LspArguments { machine, tool_length, machines, plugins, stdio: _ } = arguments;
+pub fn run(session: &Session, arguments: &LspArguments) -> Result<(), Failure> {
+    let LspArguments { machine, tool_length, machines, plugins, stdio: _ } = arguments.clone();
     post_lsp::serve(session, Options { machine, tool_length, machines, plugins })
 }

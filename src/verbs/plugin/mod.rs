@@ -9,6 +9,7 @@ mod test;
 use clap::{Args, Subcommand};
 use post_host::Plugin;
 
+use super::isolation::OpensPlugins;
 use list::ListArguments;
 use new::NewPluginArguments;
 use post_job::failure::Failure;
@@ -25,19 +26,19 @@ pub struct PluginArguments {
 
 #[derive(Debug, Subcommand)]
 enum PluginCommand {
-    List(ListArguments),
+    List(OpensPlugins<ListArguments>),
     New(NewPluginArguments),
-    Show(ShowArguments),
-    Test(TestArguments),
+    Show(OpensPlugins<ShowArguments>),
+    Test(OpensPlugins<TestArguments>),
 }
 
 /// Does as the arguments say.
 pub fn run(session: &Session, arguments: &PluginArguments) -> Result<(), Failure> {
     match &arguments.command {
-        PluginCommand::List(arguments) => list::run(session, arguments),
+        PluginCommand::List(verb) => list::run(session, verb.applied(session)),
         PluginCommand::New(arguments) => new::run(session, arguments),
-        PluginCommand::Show(arguments) => show::run(session, arguments),
-        PluginCommand::Test(arguments) => test::run(session, arguments),
+        PluginCommand::Show(verb) => show::run(session, verb.applied(session)),
+        PluginCommand::Test(verb) => test::run(session, verb.applied(session)),
     }
 }
 

@@ -6,7 +6,8 @@ use clap::Args;
 use post_host::{Isolation, Limits};
 use post_job::session::Session;
 
-/// How libraries of plugins run. On the command line alone: a job file or a machine file may be a stranger's.
+// How libraries of plugins run. On the command line alone: a job file or a machine file may be a stranger's. This and the
+// text below are no documentation, which clap would take for that of the verb.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Plugins")]
 pub struct IsolationArguments {
@@ -41,7 +42,7 @@ impl IsolationArguments {
     }
 }
 
-/// Arguments of a verb that opens plugins, and how their libraries run.
+// Arguments of a verb that opens plugins, and how their libraries run.
 #[derive(Debug, Args)]
 pub struct OpensPlugins<T: Args> {
     #[command(flatten)]

@@ -59,7 +59,8 @@ pub fn text(
 /// What the word at a column means to the control.
 fn word(line: &str, column: usize, program: &InterpretedProgram) -> Option<String> {
     let end = |letter: char| !(letter.is_ascii_alphanumeric() || letter == '.' || letter == '_');
-    let from = line[..column].rfind(end).map_or(0, |at| at + 1);
+    let from = line[..column].char_indices().rfind(|(_, letter)| end(*letter));
+    let from = from.map_or(0, |(at, letter)| at + letter.len_utf8());
     let to = line[column..].find(end).map_or(line.len(), |at| column + at);
     // Words stand against one another: `G1X2.`.
     let mut written = &line[from..to];

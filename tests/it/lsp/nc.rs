@@ -50,14 +50,7 @@ fn what_holds_at_a_line_and_the_cl_line_it_came_from_are_told() {
     let mut client = Client::new(&["--machine", "vmc"], &json!({ "toolLength": 100 }));
     client.open(&program, "plaintext", &text);
     let (line, column) = place(&text, "X20.", 1);
-    let mut said = String::new();
-    for _ in 0..600 {
-        said = client.hover(&program, line, column);
-        if !said.contains("not read yet") {
-            break;
-        }
-        thread::sleep(Duration::from_millis(50));
-    }
+    let said = hover_when_read(&mut client, &program, line, column);
     assert_contains(
         &said,
         &[
@@ -85,6 +78,23 @@ fn what_holds_at_a_line_and_the_cl_line_it_came_from_are_told() {
     // Words say what they mean, however they are joined.
     let (line, column) = place(&text, "G21", 1);
     assert_contains(&client.hover(&program, line, column), &["`G21`: millimetre"]);
+    // Letters of more than a byte stand before a word, and at the end of the file.
+    let remark = uri(&folder.path().join("remark.nc"));
+    client.open(&remark, "plaintext", "(\u{d8}G21)\n\u{fffd}");
+    assert_contains(&hover_when_read(&mut client, &remark, 0, 3), &["`G21`: millimetre"]);
+    client.hover(&remark, 9, 0);
+}
+
+/// What is said of a place of a program that the server has read.
+fn hover_when_read(client: &mut Client, program: &str, line: usize, column: usize) -> String {
+    for _ in 0..600 {
+        let said = client.hover(program, line, column);
+        if !said.contains("not read yet") {
+            return said;
+        }
+        thread::sleep(Duration::from_millis(50));
+    }
+    panic!("{program} was not read in half a minute");
 }
 
 /// Saved programs are proven, edited ones are not until they are saved again.

@@ -14,7 +14,7 @@ ROWS = Path(__file__).with_name("rows.toml")
 HEAD = Path(__file__).with_name("head.md")
 PAGE = CHECKOUT / "docs/src/reference/comparisons.md"
 NOT_RUN = "not run here"
-HEADER = "| what | there | here | like for like? | command |"
+HEADER = "| | what | there | here |"
 
 
 @dataclass(frozen=True)
@@ -112,42 +112,49 @@ class Runs:
         return Figures(row.there.format(*groups), row.shows.format(*groups))
 
 
-def line(row: Row, made: Figures | Absent) -> str:
-    """The row of the table."""
+def line(number: int, row: Row, made: Figures | Absent) -> str:
+    """The row of the table, with the number that it has below it."""
     if isinstance(made, Absent):
         made = Figures(NOT_RUN if "{" in row.there else row.there, f"{NOT_RUN}: {made.why}")
-    cells = [row.what, f"{made.there} ({row.source})", made.here, row.alike, f"`{row.command}`"]
-    return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
+    return f"| {number} | {row.what} | {made.there} ({row.source}) | {made.here} |"
+
+
+def below(number: int, row: Row) -> str:
+    """What stands below the table: what is like for like, and the command."""
+    return f"{number}. {row.alike}\n\n   ```text\n   {row.command}\n   ```\n"
 
 
 def page(parts: list[Section], runs: Runs) -> str:
     text = [HEAD.read_text().rstrip(), ""]
     for part in parts:
-        text += [f"## {part.title}", "", part.text, ""]
-        text += [HEADER, "|---|---|---|---|---|"]
-        text += [line(row, runs.figures(row)) for row in part.row] + [""]
+        text += [f"## {part.title}", "", part.text, "", HEADER, "|---|---|---|---|"]
+        text += [line(number, row, runs.figures(row)) for number, row in enumerate(part.row, 1)] + [""]
+        text += [below(number, row) for number, row in enumerate(part.row, 1)]
     return "\n".join(text)
 
 
-def check(parts: list[Section], rows: list[Row], runs: Runs) -> list[str]:
-    """What of the committed page is not what comes out; of rows that cannot be run here, all but the figures."""
+def check(parts: list[Section], asked: list[str], runs: Runs) -> list[str]:
+    """What of the committed page is not what comes out; of rows that are not asked or cannot be run, all but the figures."""
     text = PAGE.read_text()
     lines = text.splitlines()
-    wrong = [f"the page has another text than {part.title}" for part in parts if f"## {part.title}\n\n{part.text}\n" not in text]
-    wrong += [] if text.startswith(HEAD.read_text()) else ["the page has another head than head.md"]
-    tables = sum(1 for each in lines if each.startswith("| ") and each != HEADER)
+    wrong = [] if text.startswith(HEAD.read_text()) else ["the page has another head than head.md"]
+    for part in parts:
+        if f"## {part.title}\n\n{part.text}\n" not in text:
+            wrong.append(f"the page has another text than {part.title}")
+        for number, row in enumerate(part.row, 1):
+            made = runs.figures(row) if row.name in asked else Absent("not asked")
+            if isinstance(made, Absent):
+                if row.name in asked:
+                    print(f"{row.name}: {NOT_RUN}: {made.why}")
+                ends = line(number, row, Figures("\0", "\0")).split("\0")
+                held = any(each.startswith(ends[0]) and ends[1] in each and each.endswith(ends[2]) for each in lines)
+            else:
+                held = line(number, row, made) in lines
+            if not held or below(number, row) not in text:
+                wrong.append(f"{row.name}: the page has another row than\n{line(number, row, made)}")
+    tables = sum(1 for each in lines if re.match(r"\| \d", each))
     if tables != (count := sum(len(part.row) for part in parts)):
         wrong.append(f"the page has {tables} rows, rows.toml has {count}")
-    for row in rows:
-        made = runs.figures(row)
-        if isinstance(made, Absent):
-            print(f"{row.name}: {NOT_RUN}: {made.why}")
-            ends = line(row, Figures("\0", "\0")).split("\0")
-            held = any(each.startswith(ends[0]) and each.endswith(ends[2]) for each in lines)
-        else:
-            held = line(row, made) in lines
-        if not held:
-            wrong.append(f"{row.name}: the page has another row than\n{line(row, made)}")
     return wrong
 
 
@@ -160,13 +167,13 @@ def main() -> None:
         if name not in {row.name for row in rows}:
             sys.exit(f"there is no row {name}: {', '.join(row.name for row in rows)}")
     if "--check" in words:
-        asked = [row for row in rows if (row.name in names if names else not row.slow)]
-        wrong = check(parts, asked, runs)
+        wrong = check(parts, names or [row.name for row in rows if not row.slow], runs)
         sys.exit("\n".join(["docs/comparisons writes the page anew", *wrong]) if wrong else 0)
     if names:
-        for row in rows:
-            if row.name in names:
-                print(line(row, runs.figures(row)))
+        for part in parts:
+            for number, row in enumerate(part.row, 1):
+                if row.name in names:
+                    print(line(number, row, runs.figures(row)))
         return
     text = page(parts, runs)
     PAGE.write_text(text)

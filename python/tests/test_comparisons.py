@@ -32,7 +32,7 @@ def test_a_row_that_something_is_missing_for_has_no_figure() -> None:
     run = comparisons("ral-published")
     assert run.returncode == 0, run.stderr
     cells = [cell.strip() for cell in run.stdout.split(" | ")]
-    assert cells[1].startswith("not run here (") and cells[2].startswith("not run here: the authors' repository")
+    assert cells[2].startswith("not run here (") and cells[3].startswith("not run here: the authors' repository")
 
 
 def pole(*words: str | Path) -> "subprocess.CompletedProcess[str]":

@@ -35,6 +35,7 @@ mod frame;
 mod fuzzed;
 mod guide;
 mod guides;
+mod held_alike;
 mod hole_bounds;
 mod job_file;
 mod jobs;

@@ -83,6 +83,8 @@ pub struct MachineState {
     pub tool: Option<u32>,
     /// Length register in force.
     pub length_register: Option<u32>,
+    /// The length in force is that of the tool in the spindle, which no register and no number names.
+    pub length_of_spindle: bool,
     /// Radius register in force.
     pub radius_register: Option<u32>,
     /// Side of the contour: -1 left (G41), 1 right (G42), 0 off.

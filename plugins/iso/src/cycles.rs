@@ -286,6 +286,8 @@ impl Engine {
         running.first = true;
         running.top = Some(top);
         let (style, places) = (self.motion.style, self.motion.linear_decimals(2));
+        // The level lies along the axis across the plane in force.
+        self.motion.plane_xy();
         self.motion.block.word(block).number("Z", top, places, style).end(out);
     }
 

@@ -7,12 +7,24 @@
 //! Three axes follow a whole tool frame: with R the turn from the tool's frame to the wanted one, k3 must come
 //! to lie along R·k3, which the first two do as above with k3 in the place of a; k3 then turns the rest.
 
+use std::f64::consts::FRAC_PI_4;
+
 use nalgebra::{Matrix3, Vector3};
 
 use super::batch::{AxisBatch, LANES, Lanes, groups, largest, least, widely};
 use super::chain::{AxisBits, Chain, Joints, Pose, Turns, square, turn};
 use super::fault::{NoClosedForm, POLE, Unreachable};
 use super::lane_math::atan2_all;
+
+/// Tool axes farther apart are those of two faces of the part, radians: half of what is between two sides of a block. Off a
+/// way between two of them that nobody gave, the tool is retracted.
+const OTHER_FACE: f64 = FRAC_PI_4;
+
+/// Whether two tool axes, unit vectors in the part frame, are those of two faces of the part: the straight way from one to the
+/// other may lead through it.
+pub fn on_two_faces(one: &Vector3<f64>, other: &Vector3<f64>) -> bool {
+    one.dot(other) < libm::cos(OTHER_FACE)
+}
 
 /// The one or two ways to point the tool along one axis. Their angles are worked out when asked for: where
 /// solutions are far apart, the nearer one is all that is wanted.

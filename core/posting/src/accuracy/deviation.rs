@@ -48,6 +48,18 @@ pub struct NodeMove<'a> {
     pub straight: Option<f64>,
 }
 
+/// How much room a move has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MoveRoom {
+    /// A move on the part: the tolerance of cuts.
+    Part,
+    /// A rapid on the line of a tool that has cut, which may stand in the hole that it has made: the tolerance of cuts, by
+    /// axes that go as they go at rapid.
+    ToolLine,
+    /// A move off the part: the tolerance of rapids.
+    Free,
+}
+
 /// What the printed pose of a tool that is led straight misses by, at least four decimals of a mm and five of a degree.
 const PRINTED: DeviationBound = DeviationBound { tip: 1e-4, axis: 1e-6 };
 
@@ -61,31 +73,27 @@ const CERTAIN: f64 = 1.0 + 1e-6;
 const MOST_SAMPLES: f64 = 64.0;
 
 impl<'n> NodeMove<'n> {
-    /// A motion between two nodes, and what it must keep: within the tolerance of a rapid if it is `loose` (off the
-    /// part), `chord` mm of it being spent already.
+    /// A motion between two nodes, and what it must keep by its `room`, `chord` mm of that being spent already.
     #[inline]
     pub fn planned(
         machine: &Machine,
         placer: &'n Placer,
         chord: f64,
-        loose: bool,
+        room: MoveRoom,
         [from, to]: [&'n PathNode; 2],
     ) -> Self {
         let accuracy = &machine.accuracy;
-        let (tip, axis) = if loose {
-            (accuracy.rapid_tolerance, f64::INFINITY)
-        } else {
-            (accuracy.tolerance, accuracy.axis_tolerance)
+        let (tip, axis) = match room {
+            MoveRoom::Part => (accuracy.tolerance - placer.reserve(), accuracy.axis_tolerance),
+            MoveRoom::ToolLine => (accuracy.tolerance, accuracy.axis_tolerance),
+            MoveRoom::Free => (accuracy.rapid_tolerance, f64::INFINITY),
         };
-        let straight = machine.control.moves == Moves::Straight && !loose;
+        let straight = machine.control.moves == Moves::Straight && room == MoveRoom::Part;
         Self {
             placer,
             from,
             to,
-            tolerances: MoveTolerances {
-                tip: tip - chord - if loose { 0.0 } else { placer.reserve() },
-                axis,
-            },
+            tolerances: MoveTolerances { tip: tip - chord, axis },
             control_keeps_tip: machine.control.tcp == Tcp::Control || straight,
             straight: straight.then_some(accuracy.rapid_tolerance),
         }

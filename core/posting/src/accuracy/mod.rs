@@ -25,7 +25,7 @@ mod word_frame;
 
 pub use bound::DeviationBound;
 pub(crate) use columns::RunColumns;
-pub use deviation::{MoveTolerances, NodeMove};
+pub use deviation::{MoveRoom, MoveTolerances, NodeMove};
 pub use linearise::{LinearPiece, LineariseError, Lineariser};
 pub use node::{PathNode, PlacementError, Placer};
 pub use placed_batch::PlacedBatch;

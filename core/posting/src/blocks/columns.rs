@@ -7,7 +7,7 @@ use post_machine::kinematics::TcpBlock;
 use post_machine::kinematics::batch::{LANES, largest, widely};
 
 use super::{BlockStage, LargestDeviations, STILL};
-use crate::accuracy::{MoveTolerances, NodeMove, Placer, RunColumns};
+use crate::accuracy::{MoveRoom, MoveTolerances, NodeMove, Placer, RunColumns};
 
 impl BlockStage<'_> {
     /// Solves and certifies the points of a run, which ends before a point that needs more than that. False on any doubt;
@@ -74,7 +74,7 @@ impl BlockStage<'_> {
                 let from = if lane == 0 { *last } else { run.node(placer, lane) };
                 let to = run.node(placer, lane + 1);
                 let ends = [&from, &to];
-                let whole = NodeMove::planned(self.machine, placer, 0.0, false, ends);
+                let whole = NodeMove::planned(self.machine, placer, 0.0, MoveRoom::Part, ends);
                 let bound = whole.measured().least(bound);
                 (run.tip_bound[lane], run.axis_bound[lane]) = (bound.tip, bound.axis);
             }

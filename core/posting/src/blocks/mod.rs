@@ -18,6 +18,7 @@ mod plane;
 mod splined;
 mod staged;
 mod tool_alignment;
+mod tool_line;
 
 use std::rc::Rc;
 
@@ -26,7 +27,8 @@ use post_machine::description::{Machine, Tcp};
 use post_plugin::{Capabilities, Format, ModelSession};
 
 use crate::accuracy::{
-    DeviationBound, Lineariser, NodeMove, NodeRun, PathNode, PlacedBatch, Placer, RunPosition,
+    DeviationBound, Lineariser, MoveRoom, NodeMove, NodeRun, PathNode, PlacedBatch, Placer,
+    RunPosition,
 };
 use crate::configuration::{ChoiceNote, ChosenPoint, pose};
 use crate::curve::CurvePolicy;
@@ -46,6 +48,7 @@ pub use nominal::NominalTime;
 pub(crate) use nominal::{AxisKinds, AxisTravels, STILL};
 use pending_run::PendingRun;
 use plane::ActivePlane;
+use tool_line::ToolLine;
 
 /// Turns that differ by less are the same, radians.
 const TURN: f64 = 1e-6;
@@ -148,6 +151,10 @@ pub(crate) struct BlockStage<'a> {
     placed: Box<PlacedBatch>,
     /// The last move was a cut: the tool is on the part.
     on_part: bool,
+    /// The line of the tool at the end of the last cut, as long as rapids stay on it.
+    tool_line: Option<ToolLine>,
+    /// The CL file has turned the part (`ROTABL`) since the last move: it has no way from there to the next.
+    part_turned: bool,
     /// The control begins to keep the tip in a block that moves nothing.
     tcp_still: bool,
     /// The control has cutter radius compensation, the way it keeps the tip here.
@@ -203,6 +210,8 @@ impl<'a> BlockStage<'a> {
             spare: None,
             placed: Box::default(),
             on_part: false,
+            tool_line: None,
+            part_turned: false,
             tcp_still: writes.has(Capabilities::TCP_STILL),
             compensates: !tcp || writes.has(Capabilities::COMPENSATE_TCP),
             compensating: false,
@@ -385,6 +394,7 @@ impl<'a> BlockStage<'a> {
             | Command::Leave
             | Command::WorkOffset(_)
             | Command::Smoothing(_) => self.depart(line, out),
+            Command::Index { .. } => self.part_turned = true,
             // Where the tool stands after it is not known.
             Command::Subprogram(_) => {
                 self.last = None;
@@ -462,14 +472,22 @@ impl<'a> BlockStage<'a> {
         if let Some(last) = &self.last {
             self.steady(leg.placer, last, &mut node);
         }
+        if let Some(last) = &self.last
+            && self.by_vector
+            && self.points_alike(last, &node)
+            && self.turn_between(last, &node) > TURN
+        {
+            let unsaid = refusal::no_vector_says_it(self.machine, &node.trace.joints);
+            self.findings.at(leg.line, unsaid);
+        }
         let gathers = self.gathers(leg, &node);
         if !gathers {
             self.end_run(out);
         }
+        let part_turned = std::mem::take(&mut self.part_turned);
         match self.last.take() {
             None => self.first(leg, &node, BlockKind::Position, out),
-            Some(last) if self.machine.indexes && self.indexes(&last, &node) => {
-                // An index axis turns with the tool retracted, not somewhere over the part.
+            Some(last) if self.turns_retracted(&last, &node, part_turned) => {
                 let last = self.leave_part(leg.placer, leg.line, last, out);
                 self.departs_from(&last);
                 self.first(leg, &node, BlockKind::Reference, out);
@@ -492,6 +510,7 @@ impl<'a> BlockStage<'a> {
         out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
         if leg.loose && self.on_part {
+            self.tool_line = ToolLine::of(&last);
             // The tool leaves the part as it stands, and turns when it is away: where its axis stays, nothing turns
             // (unless the tip depends on it, as it does without a closed form).
             let joints = &last.trace.joints;
@@ -555,7 +574,8 @@ impl<'a> BlockStage<'a> {
         out: &mut BlockSink<'_>,
     ) {
         let chord = leg.motion.chord;
-        let whole = NodeMove::planned(self.machine, leg.placer, chord, leg.loose, [last, node]);
+        let room = self.room(leg, [last, node]);
+        let whole = NodeMove::planned(self.machine, leg.placer, chord, room, [last, node]);
         if let Some(observers) = &self.observers
             && !leg.loose
         {
@@ -577,19 +597,25 @@ impl<'a> BlockStage<'a> {
                 let nominal = self.nominal(leg, last, node);
                 self.push(leg, [last, node], nominal, whole.certify(), out);
             }
-            None => self.split(&[*leg], &[*last, *node], out),
+            None => self.split(&[*leg], room, &[*last, *node], out),
         }
     }
 
     /// Legs, one after the other, that need points or can do without some of their own.
-    fn split(&mut self, legs: &[PathLeg<'_>], nodes: &[PathNode], out: &mut BlockSink<'_>) {
+    fn split(
+        &mut self,
+        legs: &[PathLeg<'_>],
+        room: MoveRoom,
+        nodes: &[PathNode],
+        out: &mut BlockSink<'_>,
+    ) {
         let Some(first) = legs.first() else {
             return;
         };
         let mut linearise = std::mem::take(&mut self.linearise);
-        let PathLeg { placer, loose, .. } = *first;
+        let placer = first.placer;
         let chord = first.motion.chord;
-        let planned = NodeMove::planned(self.machine, placer, chord, loose, [&nodes[0], &nodes[1]]);
+        let planned = NodeMove::planned(self.machine, placer, chord, room, [&nodes[0], &nodes[1]]);
         let moves = nodes.windows(2).any(|pair| self.wanted_way(&pair[0], &pair[1]) > STILL);
         let run = NodeRun {
             placer,

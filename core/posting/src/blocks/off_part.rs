@@ -4,6 +4,7 @@ use post_machine::diagnostic::{Diagnostic, Short};
 use post_machine::kinematics::Joints;
 use post_machine::kinematics::orientation::angle;
 
+use super::tool_line::ToolLine;
 use super::{BlockReason, BlockSink, BlockStage, PathLeg, TURN};
 use crate::accuracy::{PathNode, Placer};
 use crate::configuration::pose;
@@ -62,6 +63,9 @@ impl BlockStage<'_> {
         last: Box<PathNode>,
         out: &mut BlockSink<'_>,
     ) -> Box<PathNode> {
+        if self.on_part {
+            self.tool_line = ToolLine::of(&last);
+        }
         if let Some(distance) = self.machine.frame.leave {
             return self.leave_along(placer, line, last, distance, out);
         }
@@ -103,14 +107,8 @@ impl BlockStage<'_> {
             pace: MoveFeed::Rapid,
             chord: 0.0,
         };
-        let leg = PathLeg {
-            placer,
-            line,
-            motion: &motion,
-            // In a bore it is no rapid over the part.
-            loose: placer.solver().places_tip(),
-            reason: BlockReason::Leave,
-        };
+        let leg =
+            PathLeg { placer, line, motion: &motion, loose: true, reason: BlockReason::Leave };
         self.cut(&leg, &last, &away, out);
         self.on_part = false;
         Box::new(away)

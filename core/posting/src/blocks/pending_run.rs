@@ -1,7 +1,7 @@
 //! CL points that wait for what comes after them: along one stretch of path some of them may be needless.
 
 use super::{BlockReason, BlockSink, BlockStage, PathLeg, STILL};
-use crate::accuracy::PathNode;
+use crate::accuracy::{MoveRoom, PathNode};
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::Axis;
 use post_machine::kinematics::Second;
@@ -108,7 +108,7 @@ impl BlockStage<'_> {
         out: &mut BlockSink<'_>,
     ) {
         if let (true, [_, _, ..]) = (self.machine.accuracy.reduce, legs) {
-            return self.split(legs, nodes, out);
+            return self.split(legs, MoveRoom::Part, nodes, out);
         }
         for (leg, pair) in legs.iter().zip(nodes.windows(2)) {
             self.cut(leg, &pair[0], &pair[1], out);

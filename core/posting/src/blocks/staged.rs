@@ -18,6 +18,18 @@ impl BlockStage<'_> {
             .any(|((axis, from), to)| axis.indexed.is_some() && (from - to).abs() > TURN)
     }
 
+    /// Axes turn with the tool retracted, not somewhere over the part: an index axis, and any axis where the CL file has turned
+    /// the part.
+    pub(super) fn turns_retracted(
+        &self,
+        from: &PathNode,
+        to: &PathNode,
+        part_turned: bool,
+    ) -> bool {
+        self.machine.indexes && self.indexes(from, to)
+            || part_turned && self.turn_between(from, to) > TURN
+    }
+
     /// Axes that exclude one another and would move together, group by group.
     pub(super) fn excluded(&self, from: &PathNode, to: &PathNode) -> Vec<Vec<usize>> {
         let moves =

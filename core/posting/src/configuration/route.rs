@@ -11,7 +11,7 @@ use std::rc::Rc;
 
 use post_plugin::Format;
 
-use crate::accuracy::{Lineariser, NodeMove, Placer};
+use crate::accuracy::{Lineariser, MoveRoom, NodeMove, Placer};
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::description::{Machine, Positions};
 use post_machine::diagnostic::Diagnostic;
@@ -117,9 +117,11 @@ impl CutChecker for CutTrial<'_> {
         let (Some(from), Some(to)) = (from.node(placer, 0.0), to.node(placer, 1.0)) else {
             return false;
         };
-        let loose = motion.pace == MoveFeed::Rapid;
-        let mut planned =
-            NodeMove::planned(self.machine, placer, motion.chord, loose, [&from, &to]);
+        let room = match motion.pace {
+            MoveFeed::Rapid => MoveRoom::Free,
+            _ => MoveRoom::Part,
+        };
+        let mut planned = NodeMove::planned(self.machine, placer, motion.chord, room, [&from, &to]);
         if planned.whole().is_some() {
             return true;
         }
@@ -156,7 +158,8 @@ impl CutTrial<'_> {
         let (Some(from), Some(to)) = (from.node(placer, 0.0), to.node(placer, 1.0)) else {
             return false;
         };
-        let planned = NodeMove::planned(self.machine, placer, motion.chord, false, [&from, &to]);
+        let planned =
+            NodeMove::planned(self.machine, placer, motion.chord, MoveRoom::Part, [&from, &to]);
         if planned.whole().is_some() {
             pieces.push((1.0, to.trace.joints));
             return true;

@@ -79,6 +79,7 @@ impl ControlState {
             words.used |= bit(b'H');
             self.tools.length_on = false;
             self.state.length_register = None;
+            self.state.length_of_spindle = false;
             if self.state.tcp && self.modal.tcp_by_length {
                 self.set_tcp(false, None, false);
             }
@@ -135,6 +136,8 @@ impl ControlState {
             (None, Language::Rs274) => self.state.tool,
             (None, _) => self.state.length_register,
         };
+        self.state.length_of_spindle =
+            self.state.length_register.is_none() && self.lexicon.language() == Language::Rs274;
         self.length_changed()
     }
 

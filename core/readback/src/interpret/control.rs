@@ -144,6 +144,7 @@ impl ControlState {
                 length: 0.0,
                 tool: None,
                 length_register: None,
+                length_of_spindle: false,
                 radius_register: None,
                 compensation: 0,
                 tcp: false,

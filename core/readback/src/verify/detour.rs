@@ -18,13 +18,14 @@ const SAME_LINE: f64 = 1e-3;
 /// Where a tool goes between two cuts: to the places that are asked for, and on the line of the tool at one of them as
 /// far off as it likes, and from over such a place down to it by the depth axis. Anywhere else each axis that it moves
 /// stands between where it stands at those places, or where the machine file sends it (`retract`, `leave`, `change`,
-/// `park`); the depth may be drawn back farther than at all of them. A retract in
-/// positions of the machine leads as far as the machine file says. In a program that was posted for this machine file,
-/// rotary axes turn where the tool is retracted, or with the tip on a way of the course or on the line of the tool at
-/// one of its places, and other axes stand between those places only if the tool was retracted; in another program
-/// nothing is said of the other axes while one turns. Of a machine whose ways between passes are those that bodies leave
-/// (`low_retracts`, `link`) it is said of positions of the machine alone that the depth goes no deeper than at all places
-/// that are asked for, and nothing of where axes turn: that is a matter of clearance.
+/// `park`); the depth may be drawn back farther than at all of them. A retract in positions of the machine leads as far
+/// as the machine file says. Where a way of the course leads the tip, its axes stand as that asks. In a program that was
+/// posted for this machine file, rotary axes turn where the tool is retracted, or with the tip on a way of the course or
+/// on the line of the tool at one of its places, and other axes stand between those places only if the tool was
+/// retracted; in another program nothing is said of the other axes while one turns. Of a machine whose ways between
+/// passes are those that bodies leave (`low_retracts`, `link`) it is said of positions of the machine alone that the
+/// depth goes no deeper than at all places that are asked for, and nothing of where axes turn: that is a matter of
+/// clearance.
 #[derive(Debug, Default)]
 pub(super) struct Detour {
     asked: Vec<AskedPlace>,
@@ -159,7 +160,7 @@ impl Detour {
             match end.turns(machine, slack) {
                 Some(_) if own && proven => None,
                 Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
-                _ if own && end.led => None,
+                _ if end.led => None,
                 _ => {
                     let retracted = retract::lacks(machine, &end.from, slack[0]).is_none();
                     end.astray(

@@ -128,7 +128,12 @@ impl<C: Course> Verifier<'_, C> {
         }
         let feed = way / motion.minutes;
         let rounded = self.rounded_share(motion, way);
-        if feed > asked * (1.0 + SHARE + rounded) + PLACE {
+        // Where rotary axes turn the tip goes in a bow about the way that its time was counted by, within the tolerance.
+        let counted = match turns(motion) {
+            true => way.min((places[places.len() - 1].point - places[0].point).norm()),
+            false => way,
+        };
+        if counted / motion.minutes > asked * (1.0 + SHARE + rounded) + PLACE {
             return FeedVerdict::Above(feed);
         }
         let place = self.rules.feed_place.max(PLACE);
@@ -163,14 +168,20 @@ impl<C: Course> Verifier<'_, C> {
             rounded += (2.0 * PLACE * motion.minutes / along).min(MOST_ROUNDED);
             // Where rotary axes turn the tip goes another way than the points that its time was counted by, within the
             // tolerance.
-            let turned = |joint: usize| motion.to.joints[joint] != motion.from.joints[joint];
-            let chain = motion.state.solver.chain().joints();
-            if (0..chain.len()).any(|joint| chain[joint].rotary && turned(joint)) {
+            if turns(motion) {
                 rounded += 2.0 * self.rules.tolerance / way;
             }
         }
         rounded
     }
+}
+
+/// Whether all axes go evenly, and rotary ones turn.
+fn turns(motion: &Motion) -> bool {
+    let turned = |joint: usize| motion.to.joints[joint] != motion.from.joints[joint];
+    let chain = motion.state.solver.chain().joints();
+    motion.way == Interpolation::Axes
+        && (0..chain.len()).any(|joint| chain[joint].rotary && turned(joint))
 }
 
 /// The way that a feed a minute counts, mm; degrees where no linear axis moves.

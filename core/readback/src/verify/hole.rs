@@ -1,6 +1,7 @@
 //! Holes of cycles: down the axis at feed to the bottom, and out again, in no larger pecks than asked for.
 
 use nalgebra::Vector3;
+use post_machine::kinematics::orientation::on_two_faces;
 
 use super::Verifier;
 use super::place::{PlaceDistance, ToolPlace};
@@ -53,6 +54,24 @@ pub(super) struct DrilledHole {
     cycle: bool,
 }
 
+/// Where a rapid in a hole is off its axis.
+#[derive(Clone, Copy, Debug, Default)]
+struct HoleStray {
+    off: PlaceDistance,
+    /// How far below the level where the feed begins, mm; zero: nowhere.
+    depth: f64,
+}
+
+impl HoleStray {
+    /// The one that is farther off.
+    fn larger(self, other: Self) -> Self {
+        match other.depth > 0.0 && (self.depth <= 0.0 || other.off.point > self.off.point) {
+            true => other,
+            false => self,
+        }
+    }
+}
+
 /// The axis of a hole, from the level where the feed begins.
 #[derive(Clone, Copy, Debug)]
 struct HoleAxis {
@@ -94,26 +113,21 @@ impl HoleAxis {
 }
 
 impl HoleRun {
+    /// Whether the cycle itself goes off the axis at its bottom.
+    fn shifts(&self, asked: &CourseHole, motion: &Motion) -> bool {
+        motion.hole
+            && self.bottom
+            && matches!(asked.kind, CycleKind::BoreFine | CycleKind::BoreBack)
+    }
+
     /// What is wrong with a rapid between two depths, mm below the level where the feed begins, and by how much.
     fn rapid_fault(
         &self,
         asked: &CourseHole,
-        motion: &Motion,
         [from, to]: [f64; 2],
         on_axis: bool,
         bound: f64,
     ) -> Option<(String, Option<f64>)> {
-        let above = from <= bound && to <= bound;
-        if !on_axis && !above {
-            let shifts = motion.hole
-                && self.bottom
-                && matches!(asked.kind, CycleKind::BoreFine | CycleKind::BoreBack);
-            let message = format!(
-                "a rapid leaves the axis of a hole {:.3} mm below where its feed begins",
-                from.max(to)
-            );
-            return (!shifts).then_some((message, None));
-        }
         if to > self.deepest + bound && on_axis {
             let message = format!(
                 "a rapid goes {:.3} mm into a hole that is cut {:.3} mm deep",
@@ -178,7 +192,9 @@ impl<C: Course> Verifier<'_, C> {
         let (to, _) = axis.split(&places[places.len() - 1]);
         // Off its axis it is a hole in the wrong place, if it is one.
         let near = off.point <= bound.point.max(0.5 * axis.depth).max(1.0);
-        if to <= from || !near {
+        // Drawn back off another face, the tool may go towards the hole, its holder ahead.
+        let faces = !on_two_faces(&places[0].axis, &axis.top.axis);
+        if to <= from || !near || !faces {
             return false;
         }
         let mut shift = Vector3::zeros();
@@ -265,14 +281,20 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.block.cl_line = cl_line;
         let mut worst = PlaceDistance::default();
+        let mut strays = HoleStray::default();
         let mut down = false;
         for ends in places.windows(2) {
             let ((from, _), (to, off)) = (axis.split(&ends[0]), axis.split(&ends[1]));
             let on_axis = off.point <= bound.point
                 && super::place::PlaceBound::new(1.0, off.axis).axis <= bound.axis;
             if rapid {
-                if let Some((message, by)) =
-                    run.rapid_fault(asked, motion, [from, to], on_axis, bound.point)
+                let depth = from.max(to);
+                if !on_axis && depth > bound.point {
+                    if !run.shifts(asked, motion) {
+                        strays = strays.larger(HoleStray { off, depth });
+                    }
+                } else if let Some((message, by)) =
+                    run.rapid_fault(asked, [from, to], on_axis, bound.point)
                 {
                     self.fault("hole", message, Some(motion), cl_line, by);
                 }
@@ -294,6 +316,7 @@ impl<C: Course> Verifier<'_, C> {
             }
             run.at = to;
         }
+        self.tell_stray(motion, &strays, element.line);
         if !rapid {
             self.compare_hole(motion, &element, worst);
             if down {
@@ -320,6 +343,20 @@ impl<C: Course> Verifier<'_, C> {
                 self.pass(motion, places);
             }
         }
+    }
+
+    /// Tells where a rapid in a hole is off its axis.
+    fn tell_stray(&mut self, motion: &Motion, stray: &HoleStray, cl_line: u64) {
+        let HoleStray { off, depth } = stray;
+        if *depth <= 0.0 {
+            return;
+        }
+        let (by, leans) = (off.point, off.axis.to_degrees());
+        let key = "a rapid leaves the axis of a hole".to_owned();
+        let message = format!(
+            "{key}: by {by:.3} mm and {leans:.3}° where it is {depth:.3} mm below the level where the feed begins"
+        );
+        self.limit_fault("hole", key, message, motion, cl_line, by);
     }
 
     /// Compares how far a cut in a hole is off its axis.
@@ -391,15 +428,18 @@ impl<C: Course> Verifier<'_, C> {
         in_it && goes
     }
 
-    /// The next hole that is due has another axis than the one that was made last: the course itself goes straight
-    /// there, and what it passes is not kept.
+    /// The next hole that is due has another axis than the one that was made last, of the same face of the part: the course
+    /// itself goes straight there, and what it passes is not kept.
     pub(super) fn turns_between_holes(&mut self) -> bool {
         let (Some(made), Some(index)) = (self.made, self.next) else {
             return false;
         };
         let due = self.track.get(index);
         due.is_some_and(|element| {
-            matches!(element.what, ElementKind::Hole(_)) && element.from.axis != made.axis.top.axis
+            let (before, then) = (made.axis.top.axis, element.from.axis);
+            matches!(element.what, ElementKind::Hole(_))
+                && then != before
+                && !on_two_faces(&before, &then)
         })
     }
 

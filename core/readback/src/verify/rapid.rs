@@ -6,10 +6,11 @@ use post_motion::path::nearest_share;
 use super::detour::{RapidAllowance, StrayKind};
 use super::place::{PlaceBound, ShareSpan, ToolPlace, free, nearest};
 use super::report::BlockPlace;
+use super::sweep::draws_back;
 use super::track::ElementKind;
 use super::{RAPID_TURN, Verifier};
-use crate::Motion;
 use crate::course::Course;
+use crate::{Motion, MotionKind};
 
 impl<C: Course> Verifier<'_, C> {
     /// A motion at rapid.
@@ -39,7 +40,7 @@ impl<C: Course> Verifier<'_, C> {
             return;
         }
         let asked = asked || self.may_begin(end);
-        if known && !follows {
+        if known && !follows && !self.leaves_along_itself(places) {
             self.look_how_near(motion, places);
             if !asked {
                 self.look_where_it_ends(motion, end);
@@ -220,6 +221,21 @@ impl<C: Course> Verifier<'_, C> {
             }
         }
         self.next = Some(next);
+    }
+
+    /// All along a rapid the tool is drawn back from where it began: where its holder goes it has been itself, however near to
+    /// a wall it has cut.
+    fn leaves_along_itself(&self, places: &[ToolPlace]) -> bool {
+        places[1..].iter().all(|place| draws_back(&[places[0], *place], &self.bound))
+    }
+
+    /// A first point of the course is where the tool stands already: nothing has moved since its length was called.
+    pub(super) fn stands_at_a_first_point(&mut self, motion: &Motion, place: ToolPlace) {
+        let due = self.next.and_then(|next| self.behind_events(next));
+        let due = due.and_then(|index| self.track.get(index));
+        if due.is_some_and(|due| matches!(due.what, ElementKind::Reach(MotionKind::Rapid))) {
+            self.pass(motion, &[place, place]);
+        }
     }
 
     /// A rapid must not end where something is cut, unless the course does.

@@ -348,6 +348,7 @@ impl<C: Course> Verifier<'_, C> {
         if !self.rules.length_from.are_named()
             || motion.machine
             || motion.state.length_register.is_some()
+            || motion.state.length_of_spindle
         {
             return;
         }

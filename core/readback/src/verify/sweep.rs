@@ -74,6 +74,7 @@ impl<C: Course> Verifier<'_, C> {
             self.next = None;
         }
         if self.apart {
+            self.stands_at_a_first_point(motion, places[0]);
             if self.is_no_cut(motion, places, fast) {
                 return;
             }
@@ -513,7 +514,7 @@ impl<C: Course> Verifier<'_, C> {
 }
 
 /// Along the tool's own axis to the holder: a tool that leaves what it cuts so does no harm, at whatever feed.
-fn draws_back(places: &[ToolPlace], bound: &PlaceBound) -> bool {
+pub(super) fn draws_back(places: &[ToolPlace], bound: &PlaceBound) -> bool {
     let (from, to) = (&places[0], &places[places.len() - 1]);
     let way = to.point - from.point;
     let along = way.dot(&from.axis);

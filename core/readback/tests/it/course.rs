@@ -31,6 +31,7 @@ fn state(solver: &Arc<Solver>) -> Arc<MachineState> {
         length: 0.0,
         tool: Some(1),
         length_register: None,
+        length_of_spindle: false,
         radius_register: None,
         compensation: 0,
         tcp: false,

@@ -138,6 +138,7 @@ fn what_is_found_does_not_hang_on_whether_each_line_is_told() {
         length: 0.0,
         tool: None,
         length_register: Some(1),
+        length_of_spindle: false,
         radius_register: None,
         compensation: 0,
         tcp: true,

@@ -146,6 +146,7 @@ impl Does {
             length: 0.0,
             tool: None,
             length_register: Some(1),
+            length_of_spindle: false,
             radius_register: None,
             compensation: 0,
             tcp: false,

@@ -6,6 +6,7 @@ use post_machine::kinematics::batch::{
     LANES, Lanes, VectorColumn, groups, largest, least, set_vector, vector, widely,
 };
 
+use super::readiness::EndAxis;
 use super::{ClInterpreter, ModalFeed, StepSink, UnfinishedCurve};
 use crate::program::limits::{MOST_COORDINATE, direction, is_near};
 use crate::program::{Command, MoveFeed, ProgramStep, StraightMove};
@@ -137,6 +138,7 @@ impl ClInterpreter {
         if !self.set_axis(record, axis) {
             return;
         }
+        let begins = self.due;
         self.before_move(record, emit);
         let Some(tip) = self.point(record, point) else {
             return;
@@ -154,6 +156,10 @@ impl ClInterpreter {
         } else if let Some((drill, feed)) = self.cycles.in_force
             && let Some(pace) = self.resolved(record, feed)
         {
+            if !begins {
+                let axis = self.frame.direction_to_part(start_axis);
+                self.turn_over(EndAxis { axis, positions: false }, emit);
+            }
             self.drill(record, drill, pace, tip, emit);
         }
     }

@@ -1,16 +1,12 @@
 //! What must be in order before the tool moves and before it cuts: axis, tool, cutter, spindle.
 
-use std::f64::consts::FRAC_PI_4;
-
 use nalgebra::Vector3;
 use post_grammar::Record;
+use post_machine::kinematics::orientation::on_two_faces;
 use post_plugin::Spindle;
 
 use super::{ClInterpreter, DefaultSpindle, StepSink};
 use crate::program::{Command, ProgramStep};
-
-/// Tool axes farther apart are those of two faces of the part, radians: half of what is between two sides of a block.
-const OTHER_FACE: f64 = FRAC_PI_4;
 
 /// Unit vectors that differ by less are one tool axis.
 pub(super) const ONE_AXIS: f64 = 1e-3;
@@ -85,15 +81,15 @@ impl ClInterpreter {
 
     /// The first move of an operation: where it comes at rapid to another face of the part, the way of the CAM system
     /// between the two is none that a tool could go, and the tool is retracted first; behind one whose axis stood all the
-    /// time, which a system leads away from its own face alone, wherever the axis is another one. `before` is how the
-    /// operation before ended.
-    fn turn_over(&self, before: EndAxis, emit: &mut StepSink<'_>) {
+    /// time, which a system leads away from its own face alone, wherever the axis is another one. So it is between two holes
+    /// of a cycle, where nobody gives a way. `before` is how the operation, or the hole, before ended.
+    pub(super) fn turn_over(&self, before: EndAxis, emit: &mut StepSink<'_>) {
         let EndAxis { axis, positions } = before;
         let next = self.frame.direction_to_part(self.axis);
         let rapid = self.rapid || self.rapid_feed || self.cycles.in_force.is_some();
         let other_face = match positions {
             true => (axis - next).norm() > ONE_AXIS,
-            false => axis.dot(&next) < libm::cos(OTHER_FACE),
+            false => on_two_faces(&axis, &next),
         };
         if rapid && self.tip.is_some() && other_face {
             emit(ProgramStep::Command(Command::Leave));

@@ -104,7 +104,7 @@ fn a_fed_rapid_at_half_speed_is_found() {
         assert!(run.err.contains("error[rapid]"), "{line}\n{}", run.err);
         found += 1;
     }
-    assert!(found >= 2, "{found} fed rapids in\n{text}");
+    assert!(found >= 1, "{found} fed rapids in\n{text}");
 }
 
 /// A block from its first word of an axis on.
@@ -118,10 +118,10 @@ fn words_of_axes(block: &str) -> &str {
     }
 }
 
-/// The CL file goes from one side of the part to the other straight through where its holes are: so does the program, in
-/// as many rapids as keep its tip on that line.
+/// The CL file has no way from a hole in one side of the part to one in the other but through where its holes are: the
+/// program is retracted there, with the post keeping the tip, too.
 #[test]
-fn a_rapid_between_holes_may_end_where_the_cl_file_leads_it() {
+fn between_holes_in_two_sides_no_rapid_touches_them() {
     for machine in ["duoblock", "head-table-bc", "head-table-sr"] {
         let sample = format!("tests/machines/{machine}.apt");
         let run = crate::common::post(&[

@@ -211,6 +211,8 @@ pub struct Verifier<'m, C> {
     cycle: Option<CycleKind>,
     /// Where the course cuts.
     cut_path: CutPath,
+    /// Where the last cut ended, as long as the tool was drawn back from there alone.
+    cut_end: Option<ToolPlace>,
     /// The tool has come to a point of the course.
     placed: bool,
     /// The course's own rapids that the motion at hand has passed: from where to where, mm.
@@ -277,6 +279,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             made: None,
             cycle: None,
             cut_path: CutPath::new(along),
+            cut_end: None,
             placed: false,
             passed: Vec::new(),
             places: Vec::new(),
@@ -436,7 +439,9 @@ impl<'m, C: Course> Verifier<'m, C> {
                     self.axis_fault(motion, fault);
                 }
                 goes_on = self.goes_on(motion, &places);
-                if !goes_on {
+                if goes_on {
+                    self.cut_end = places.last().copied();
+                } else {
                     self.settle();
                     self.feed(motion, &places);
                 }

@@ -40,7 +40,8 @@ impl<C: Course> Verifier<'_, C> {
             return;
         }
         let asked = asked || self.may_begin(end);
-        if known && !follows && !self.leaves_along_itself(places) {
+        let leaves = self.leaves_along_itself(places);
+        if known && !follows && !leaves {
             self.look_how_near(motion, places);
             if !asked {
                 self.look_where_it_ends(motion, end);
@@ -223,10 +224,16 @@ impl<C: Course> Verifier<'_, C> {
         self.next = Some(next);
     }
 
-    /// All along a rapid the tool is drawn back from where it began: where its holder goes it has been itself, however near to
-    /// a wall it has cut.
-    fn leaves_along_itself(&self, places: &[ToolPlace]) -> bool {
-        places[1..].iter().all(|place| draws_back(&[places[0], *place], &self.bound))
+    /// Since the last cut the tool was drawn back from where that ended, and nothing else: where its holder goes it has been
+    /// itself, however near to a wall it has cut.
+    fn leaves_along_itself(&mut self, places: &[ToolPlace]) -> bool {
+        let bound = self.bound;
+        let back = |end: &ToolPlace| {
+            let stays = |place: &ToolPlace| place.within(end, &bound);
+            places.iter().all(|place| stays(place) || draws_back(&[*end, *place], &bound))
+        };
+        self.cut_end = self.cut_end.filter(back);
+        self.cut_end.is_some()
     }
 
     /// A first point of the course is where the tool stands already: nothing has moved since its length was called.

@@ -80,6 +80,7 @@ impl<C: Course> Verifier<'_, C> {
             }
             self.begin_cut(motion, &places[0]);
         }
+        self.cut_end = places.last().copied();
         self.cut(motion, places);
     }
 

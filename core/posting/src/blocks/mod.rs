@@ -653,6 +653,12 @@ impl<'a> BlockStage<'a> {
                 self.nominal = due;
                 self.counts.points_dropped += (legs.len() - kept.min(legs.len())) as u64;
             }
+            // Off a cut that is no hole the axes may turn to another solution on the tool's line.
+            Err(_) if room == MoveRoom::ToolLine => {
+                self.linearise = linearise;
+                self.tool_line = None;
+                return self.split(legs, MoveRoom::Free, nodes, out);
+            }
             Err((leg, stuck)) => {
                 let leg = &legs[leg];
                 let finding = refusal::stuck(self.machine, &stuck, leg.motion);

@@ -1,6 +1,7 @@
 //! Cutter-location files, NC programs and the small languages of a machine file: text in, typed records out.
 //!
 //! A cutter-location file goes through [`ClReader`], which splits it into logical lines in one reused buffer.
+//! A list of points, CSV or JSON, becomes the same records there.
 //! The language is that of the pest grammar `line.pest`; a hand-written scanner gives the same for every usual line
 //! and leaves the others to pest, which reads them or says what is wrong.
 //! An NC program becomes blocks ([`nc`]).
@@ -16,6 +17,7 @@ mod fault;
 mod inequality;
 mod layout;
 pub mod nc;
+mod points;
 mod template;
 pub mod text;
 

@@ -250,8 +250,8 @@ class Machine:
 
         In the place of the file ``points`` (n, 3) are tips, mm, part frame, with their tool ``axes`` (n, 3) or one for all,
         and ``feed`` (n,), mm/min, by which the tool comes to each, or one for all. ``cut`` (n,) says of each whether it comes
-        cutting, or in a rapid; without it only the first is come to in a rapid. They become the lines of a CL file, to the
-        last digit, which is kept as long as the job is: lines in messages are lines of that. ``tool=1, spindle=6000`` say
+        cutting, or in a rapid; without it only the first is come to in a rapid. They become a list of points
+        in CSV, to the last digit, which is kept as long as the job is: in messages the first point is on line 2. ``tool=1, spindle=6000`` say
         the rest.
 
         ``output`` writes the program there, whole or not at all; without it nothing is written. ``blocks=False`` keeps no

@@ -1,4 +1,4 @@
-"""Points as a CL file: what posts files posts them too."""
+"""Points as a list of points: what posts files posts them too."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from post.arguments import along, floats, rows
 
 
 class PointFile:
-    """The CL file of points, in a folder of its own that goes with it."""
+    """The list of points, in a folder of its own that goes with it."""
 
     def __init__(self, points: ArrayLike, axes: ArrayLike, feed: ArrayLike | None, cut: ArrayLike | None) -> None:
-        text = cl_text(points, axes, feed, cut)
+        text = list_text(points, axes, feed, cut)
         self._folder = tempfile.TemporaryDirectory(prefix="post-")
-        self.path = os.path.join(self._folder.name, "points.cls")
+        self.path = os.path.join(self._folder.name, "points.csv")
         """Its name."""
         with open(self.path, "w", encoding="ascii") as file:
             file.write(text)
 
 
-def cl_text(points: ArrayLike, axes: ArrayLike, feed: ArrayLike | None, cut: ArrayLike | None) -> str:
-    """The lines of a CL file: of each point GOTO, and before it RAPID, or FEDRAT where the feed is another."""
+def list_text(points: ArrayLike, axes: ArrayLike, feed: ArrayLike | None, cut: ArrayLike | None) -> str:
+    """The lines of a list: a header, then a line for each point in their order."""
     tips = rows("points", points, 3)
     directions = along("axes", axes, tips)
     for name, values in (("points", tips), ("axes", directions)):
@@ -38,16 +38,11 @@ def cl_text(points: ArrayLike, axes: ArrayLike, feed: ArrayLike | None, cut: Arr
     wrong = np.flatnonzero(cuts & ~((feeds > 0) & np.isfinite(feeds)))
     if len(wrong):
         raise ValueError(f"feed[{wrong[0]}] is {feeds[wrong[0]]}, not a feed above 0 mm/min")
-    lines = ["UNITS/MM"]
-    last = None
+    lines = ["x,y,z,i,j,k,cut,feed"]
     for tip, direction, rate, is_cut in zip(tips.tolist(), directions.tolist(), feeds.tolist(), cuts.tolist(), strict=True):
-        if not is_cut:
-            lines.append("RAPID")
-        elif rate != last:
-            lines.append(f"FEDRAT/MMPM,{decimal(rate)}")
-            last = rate
-        lines.append("GOTO/" + ",".join(decimal(value) for value in (*tip, *direction)))
-    return "\n".join([*lines, "FINI", ""])
+        place = ",".join(decimal(value) for value in (*tip, *direction))
+        lines.append(f"{place},1,{decimal(rate)}" if is_cut else f"{place},0,")
+    return "\n".join([*lines, ""])
 
 
 def each(name: str, values: ArrayLike, count: int) -> NDArray[np.float64]:

@@ -58,6 +58,7 @@ mod order;
 mod orientation;
 mod part_place;
 mod place;
+mod point_lists;
 mod plan_rounds;
 mod plan_shown;
 mod plan_worth;

@@ -159,7 +159,7 @@ fn driven<'t>(text: &'t str, drive: Pair<'t, Rule>) -> LogicalLine<'t> {
 }
 
 /// The value of a text that is a number as a whole, and one that a double holds.
-pub(super) fn number_of(text: &str) -> Option<f64> {
+pub(crate) fn number_of(text: &str) -> Option<f64> {
     let digits = text.trim_start_matches(['+', '-', '.']);
     if !digits.starts_with(|first: char| first.is_ascii_digit()) {
         return None;

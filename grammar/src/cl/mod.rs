@@ -15,6 +15,6 @@ mod vocabulary;
 pub use goto_run::GotoRun;
 pub use line::parse_record;
 pub use piece::{ClBatch, ClPiece};
-pub use reader::ClReader;
+pub use reader::{ClReader, NEXT_FILE};
 pub use record::*;
 pub use vocabulary::{MajorWord, UnknownPath, WordUsage};

@@ -16,6 +16,7 @@ use super::piece::ClPiece;
 use super::record::Record;
 use super::scan::{self, PlainGoto};
 use crate::fault::{ReadError, SyntaxFault};
+use crate::points::{ListForm, MOST_JSON, PointList};
 use crate::text::excerpt;
 use memchr::{memchr_iter, memchr2, memchr3};
 use std::borrow::Cow;
@@ -33,6 +34,10 @@ const HEAD: usize = 4096;
 
 /// UTF-8 for U+FEFF, which some editors put before a text.
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
+
+/// The file separator of ASCII, at the end of a remark: the next line is the first of another file, whose form may be
+/// another.
+pub const NEXT_FILE: u8 = 0x1C;
 
 /// How much of a record that is too long is shown.
 const SHOWN: usize = 80;
@@ -61,6 +66,11 @@ pub struct ClReader<R> {
     unended: bool,
     /// The beginning of the file was looked at.
     begun: bool,
+    /// The file is a list of points.
+    points: Option<PointList>,
+    /// Where the text of the row stands in the buffer whose records are given, and its line.
+    row: Range<usize>,
+    row_line: u64,
 }
 
 /// A physical line; offsets from `start`.
@@ -88,6 +98,9 @@ impl<R: Read> ClReader<R> {
             parted: false,
             unended: false,
             begun: false,
+            points: None,
+            row: 0..0,
+            row_line: 1,
         }
     }
 
@@ -112,6 +125,9 @@ impl<R: Read> ClReader<R> {
         if !self.begun {
             self.begin()?;
         }
+        if self.points.is_some() {
+            return self.next_of_list();
+        }
         if self.layout.learn(&self.buffer, self.start, self.end)
             && let Some(values) = self.laid_out()
         {
@@ -124,7 +140,11 @@ impl<R: Read> ClReader<R> {
         }
         while let Some(physical) = self.physical(0)? {
             let line = self.line;
-            let raw = self.start..self.start + physical.end;
+            let mut raw = self.start..self.start + physical.end;
+            if self.buffer[raw.clone()].ends_with(&[NEXT_FILE]) {
+                self.begun = false;
+                raw.end -= 1;
+            }
             let text = &self.buffer[raw.clone()];
             // A `$` at the end may mean that the record goes on.
             let whole = !physical.overlong && !text.trim_ascii_end().ends_with(b"$");
@@ -151,10 +171,18 @@ impl<R: Read> ClReader<R> {
     #[cold]
     fn begin(&mut self) -> Result<(), ReadError> {
         self.begun = true;
-        if self.pending().is_empty() {
+        while self.end - self.start < HEAD && !self.ended {
             self.fill()?;
         }
         let head = &self.pending()[..HEAD.min(self.end - self.start)];
+        match ListForm::of(head) {
+            Some(ListForm::Csv) => {
+                self.points = Some(PointList::Csv(Box::default()));
+                return Ok(());
+            }
+            Some(ListForm::Json) => return self.begin_json(),
+            None => {}
+        }
         let Some(kind) = foreign::kind(head) else {
             return Ok(());
         };
@@ -164,12 +192,143 @@ impl<R: Read> ClReader<R> {
         let text = excerpt(&text, SHOWN).into_owned();
         let message = format!("this is {kind}, no cutter-location file");
         let fault = SyntaxFault::new(&text, 0..text.len(), message);
-        self.start = self.end;
-        self.ended = true;
-        self.unended = false;
+        self.pass_the_rest();
         let help =
             "let the CAM system write a CL file: APT, CLSF or NCL, one record a line (GOTO/1,2,3)";
         Err(fault.help(help).into())
+    }
+
+    /// Reads a list of points in one piece.
+    #[cold]
+    fn begin_json(&mut self) -> Result<(), ReadError> {
+        while !self.ended && self.end - self.start <= MOST_JSON {
+            self.fill()?;
+        }
+        let bytes = self.pending().to_vec();
+        let wrong = match String::from_utf8(bytes) {
+            Ok(text) if text.len() <= MOST_JSON => {
+                self.points = Some(PointList::Json { text, list: Box::default() });
+                return Ok(());
+            }
+            Ok(_) => "a list of points in JSON of more than 1 GiB, which is read in one piece",
+            Err(_) => "this list of points is no UTF-8",
+        };
+        self.pass_the_rest();
+        Err(SyntaxFault::new("", 0..0, wrong).help("write it as CSV, a point a line").into())
+    }
+
+    /// Nothing more of the input is read.
+    fn pass_the_rest(&mut self) {
+        self.start = self.end;
+        self.ended = true;
+        self.unended = false;
+    }
+
+    /// The next record of a list of points, or behind it.
+    fn next_of_list(&mut self) -> Result<Option<Record<'_>>, ReadError> {
+        let more = match &self.points {
+            Some(PointList::Csv(_)) => self.row_of_csv()?,
+            Some(PointList::Json { .. }) => self.row_of_json()?,
+            None => false,
+        };
+        match more {
+            true => Ok(self.row_record()),
+            false => self.next_record(),
+        }
+    }
+
+    /// The next record of the row that was taken last.
+    fn row_record(&mut self) -> Option<Record<'_>> {
+        let line = self.row_line;
+        let (statement, raw) = match self.points.as_mut()? {
+            PointList::Csv(list) => (list.records.next()?, &self.buffer[self.row.clone()]),
+            PointList::Json { text, list } => {
+                (list.records.next()?, text.get(self.row.clone())?.as_bytes())
+            }
+        };
+        Some(Record { line, raw, statement })
+    }
+
+    /// Takes lines of a list until one says something; false: the list is over, and what follows is no list.
+    fn row_of_csv(&mut self) -> Result<bool, ReadError> {
+        loop {
+            let Some(PointList::Csv(list)) = &self.points else {
+                return Ok(false);
+            };
+            if list.records.waits() {
+                return Ok(true);
+            }
+            let (line, physical) = (self.line, self.physical(0)?);
+            let text = physical.as_ref().map(|physical| &self.pending()[..physical.end]);
+            // Another file begins there.
+            let over = text.is_none_or(|text| text.starts_with(b"$$"));
+            let Some(PointList::Csv(list)) = &mut self.points else {
+                return Ok(false);
+            };
+            self.row_line = line;
+            if over {
+                self.row = self.start..self.start;
+                if list.end() {
+                    self.points = None;
+                    return Ok(false);
+                }
+                continue;
+            }
+            let Some(physical) = physical else {
+                continue;
+            };
+            self.row = self.start..self.start + physical.end;
+            let text = decode(&self.buffer[self.row.clone()]);
+            // Old DOS systems end a text file with 0x1A.
+            if matches!(text.trim(), "" | "\x1A") {
+                self.consume(&physical, 1);
+                continue;
+            }
+            let (taken, has_header) = (list.take(&text), list.has_header());
+            let ended = self.ended && physical.next == physical.end;
+            let text = ended.then(|| text.into_owned());
+            self.consume(&physical, 1);
+            if let Err(fault) = taken {
+                if !has_header {
+                    self.pass_the_rest();
+                }
+                return Err(SyntaxFault { line, ..fault }.into());
+            }
+            if let Some(text) = text {
+                self.pass_the_rest();
+                let message = "the list ends within this line: what follows may be missing";
+                let fault = SyntaxFault::new(&text, text.len()..text.len(), message);
+                let fault = fault.help("end the last line as the others, with a line end");
+                return Err(SyntaxFault { line, ..fault }.into());
+            }
+        }
+    }
+
+    /// Takes the next point of a list, and what stands ahead of the first; false: the list is over, and what follows is
+    /// none.
+    fn row_of_json(&mut self) -> Result<bool, ReadError> {
+        loop {
+            let Some(PointList::Json { text, list }) = &mut self.points else {
+                return Ok(false);
+            };
+            if list.records.waits() {
+                return Ok(true);
+            }
+            let first = self.line;
+            match list.take(text) {
+                Ok(Some((row, line))) => (self.row, self.row_line) = (row, first + line),
+                Ok(None) => {
+                    let lines = text.as_bytes()[..list.end].iter().filter(|byte| **byte == b'\n');
+                    self.line += lines.count() as u64;
+                    self.start += list.end;
+                    self.points = None;
+                    return Ok(false);
+                }
+                Err(fault) => {
+                    return Err(SyntaxFault { line: first + fault.line, ..fault }.into());
+                }
+            }
+        }
     }
 
     /// Takes the `GOTO` records that follow as far as they are laid out as those before, into `run`; gives their text.

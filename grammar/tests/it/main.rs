@@ -4,6 +4,7 @@ mod chain;
 mod expression;
 mod files;
 mod nc;
+mod points;
 mod reader;
 mod statements;
 mod template;

@@ -4,6 +4,7 @@ use std::io::{self, Cursor, Read};
 use std::path::Path;
 use std::sync::Arc;
 
+use post_grammar::NEXT_FILE;
 use post_grammar::text::as_remark;
 use post_machine::diagnostic::{Diagnostic, FurtherFile};
 
@@ -166,5 +167,5 @@ fn remark(file: &FurtherFile) -> String {
     let name = Path::new(&file.name).file_name().unwrap_or_default();
     let name = as_remark(name.to_string_lossy().into_owned());
     let end = if file.behind_line_end { "" } else { "\n" };
-    format!("{end}$$ {name}\n")
+    format!("{end}$$ {name}{}\n", char::from(NEXT_FILE))
 }

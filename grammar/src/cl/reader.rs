@@ -204,13 +204,16 @@ impl<R: Read> ClReader<R> {
         while !self.ended && self.end - self.start <= MOST_JSON {
             self.fill()?;
         }
-        let bytes = self.pending().to_vec();
+        let mut bytes = std::mem::replace(&mut self.buffer, vec![0; CHUNK]);
+        bytes.truncate(self.end);
+        bytes.drain(..self.start);
+        (self.start, self.end) = (0, 0);
         let wrong = match String::from_utf8(bytes) {
             Ok(text) if text.len() <= MOST_JSON => {
                 self.points = Some(PointList::Json { text, list: Box::default() });
                 return Ok(());
             }
-            Ok(_) => "a list of points in JSON of more than 1 GiB, which is read in one piece",
+            Ok(_) => "a list of points in JSON of more than 256 MiB, which is read in one piece",
             Err(_) => "this list of points is no UTF-8",
         };
         self.pass_the_rest();
@@ -277,6 +280,14 @@ impl<R: Read> ClReader<R> {
             let Some(physical) = physical else {
                 continue;
             };
+            if physical.overlong {
+                let shown = decode(&self.buffer[self.start..self.start + SHOWN]).into_owned();
+                self.consume(&physical, 1);
+                let message = format!("a row of more than {LONGEST} bytes");
+                let fault = SyntaxFault::new(&shown, 0..shown.len(), message);
+                let fault = fault.help("a point has a line of its own");
+                return Err(SyntaxFault { line, ..fault }.into());
+            }
             self.row = self.start..self.start + physical.end;
             let text = decode(&self.buffer[self.row.clone()]);
             // Old DOS systems end a text file with 0x1A.
@@ -320,7 +331,10 @@ impl<R: Read> ClReader<R> {
                 Ok(None) => {
                     let lines = text.as_bytes()[..list.end].iter().filter(|byte| **byte == b'\n');
                     self.line += lines.count() as u64;
-                    self.start += list.end;
+                    // Another file may follow.
+                    self.buffer = text.as_bytes()[list.end..].to_vec();
+                    (self.start, self.end) = (0, self.buffer.len());
+                    self.buffer.resize(self.end.max(CHUNK), 0);
                     self.points = None;
                     return Ok(false);
                 }

@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
-use super::{Cell, CellFault, RowColumns, RowRecords, Settings};
+use super::{Cell, CellFault, RowColumns, RowRecords, SHOWN, Settings};
 use crate::fault::SyntaxFault;
 
 /// Longest list, bytes: it is read in one piece.
-pub(crate) const MOST_JSON: usize = 1 << 30;
+pub(crate) const MOST_JSON: usize = 256 << 20;
+
+/// Most values of a point.
+const MOST_VALUES: usize = 64;
 
 /// Deepest nesting.
 const DEEPEST: usize = 16;
-
-/// What is shown of a line on either side of a fault, bytes.
-const SHOWN: usize = 60;
 
 /// The columns of points that are lists of numbers, where the list does not name them.
 const PLAIN: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
@@ -476,6 +476,7 @@ impl JsonCursor<'_> {
         }
         loop {
             values.push(self.value(depth + 1)?);
+            self.refuse_many(values.len())?;
             if !self.separated(b']')? {
                 return Ok(values);
             }
@@ -491,9 +492,17 @@ impl JsonCursor<'_> {
         loop {
             let (key, key_span) = self.key()?;
             entries.push(Entry { key, key_span, value: self.value(depth + 1)? });
+            self.refuse_many(entries.len())?;
             if !self.separated(b'}')? {
                 return Ok(entries);
             }
+        }
+    }
+
+    fn refuse_many(&self, count: usize) -> Read<()> {
+        match count > MOST_VALUES {
+            true => self.fault(&format!("more than {MOST_VALUES} values in one point")),
+            false => Ok(()),
         }
     }
 

@@ -22,6 +22,9 @@ pub(crate) use json::{JsonList, MOST_JSON};
 use row::{Row, RowColumns};
 use setting::Settings;
 
+/// What is shown of a name, and of a line on either side of a fault, bytes.
+const SHOWN: usize = 60;
+
 /// A list, by how it is written.
 #[derive(Debug)]
 pub(crate) enum PointList {
@@ -99,7 +102,7 @@ impl RowRecords {
     fn row(&mut self, row: Row, settings: &Settings) {
         let cuts = row.cuts.unwrap_or(self.begun || row.arc.is_some());
         self.begun = true;
-        let feed = row.feed.or(settings.feed).filter(|_| cuts);
+        let feed = row.feed.or(settings.feed.filter(|_| cuts));
         if let Some(value) = feed.filter(|feed| self.feed != Some(*feed)) {
             let unit = Some(FeedUnit::PerMinute);
             self.queue.push_back(Statement::Feed(FeedRate { value: Some(value), unit }));

@@ -1,7 +1,8 @@
 //! Rows of a list: cells by the names of their columns.
 
-use super::{Cell, CellFault};
+use super::{Cell, CellFault, SHOWN};
 use crate::cl::{Direction, Point};
+use crate::text::excerpt;
 
 /// A point, and how the tool comes to it.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +93,10 @@ impl RowColumns {
                          the column out"
                             .to_owned(),
                     ),
-                    _ => (format!("a list of points has no column `{name}`"), String::new()),
+                    _ => {
+                        let name = excerpt(name, SHOWN);
+                        (format!("a list of points has no column `{name}`"), String::new())
+                    }
                 };
                 let help = if help.is_empty() { format!("expected of {COLUMNS}") } else { help };
                 return Err(CellFault::at(cell, message, help));

@@ -1,6 +1,7 @@
 //! What a list says besides its points.
 
-use super::{Cell, CellFault, CoolantWord, Units};
+use super::{Cell, CellFault, CoolantWord, SHOWN, Units};
+use crate::text::excerpt;
 
 /// What holds for all points of a list.
 #[derive(Clone, Debug, Default)]
@@ -79,7 +80,7 @@ impl Settings {
                 _ => return wrong("a text"),
             },
             _ => {
-                let message = format!("a list of points has no setting `{name}`");
+                let message = format!("a list of points has no setting `{}`", excerpt(name, SHOWN));
                 return Err(CellFault::at(0, message, format!("expected one of {SETTINGS}")));
             }
         };

@@ -77,6 +77,7 @@ fn a_header_and_rows_are_a_cl_file() {
         (11, "GOTO/2,0,0,0,0,1"),
         (12, "FEDRAT/8,PERMIN"),
         (12, "GOTO/3,0,0,0,0,1"),
+        (14, "FEDRAT/4,PERMIN"),
         (14, "RAPID"),
         (14, "GOTO/3,0,9,0,0,1"),
         (16, "FINI"),
@@ -217,6 +218,25 @@ fn a_list_that_was_cut_off_is_told() {
         "{all:?}"
     );
     assert!(!both("x,y,z\n1,2,3\n1,2,3\n\u{1a}").iter().any(|told| told.contains("ends")));
+}
+
+/// What nobody writes takes no memory to be refused.
+#[test]
+fn a_hostile_list_is_refused() {
+    let wide = format!("x,y,z\n{}\n1,2,3\n", "1,".repeat(600_000));
+    let all = read(wide.as_bytes(), usize::MAX);
+    assert!(all[1].starts_with("2:1 a row of more than 1048576 bytes"), "{}", all[1]);
+    assert!(all.iter().any(|told| told.contains("Goto")), "{}", all.len());
+    for (list, told) in [
+        (format!("[[{}0]]", "0,".repeat(1_000_000)), "more than 64 values in one"),
+        (format!("[{}", "[".repeat(100_000)), "a bracket is still open"),
+        (format!("[{}{}]", "[".repeat(1000), "]".repeat(1000)), "lists within lists"),
+        (format!("[[0,0,0],{{\"a{}\":1}}]", "b".repeat(100_000)), "a list of points has no column"),
+    ] {
+        let all = read(list.as_bytes(), usize::MAX);
+        let found = all.iter().find(|found| found.contains(told));
+        assert!(found.is_some_and(|found| found.len() < 1000), "{told}");
+    }
 }
 
 /// Files that are read one behind the other need not be of one form.

@@ -68,7 +68,8 @@ pub struct ClReader<R> {
     begun: bool,
     /// The file is a list of points.
     points: Option<PointList>,
-    /// Where the text of the row stands in the buffer whose records are given, and its line.
+    /// The row whose records are given: its text, where that stands in a list that is held in one piece, and its line.
+    row_text: Vec<u8>,
     row: Range<usize>,
     row_line: u64,
 }
@@ -99,6 +100,7 @@ impl<R: Read> ClReader<R> {
             unended: false,
             begun: false,
             points: None,
+            row_text: Vec::new(),
             row: 0..0,
             row_line: 1,
         }
@@ -171,7 +173,13 @@ impl<R: Read> ClReader<R> {
     #[cold]
     fn begin(&mut self) -> Result<(), ReadError> {
         self.begun = true;
-        while self.end - self.start < HEAD && !self.ended {
+        // Up to the end of a line that says something.
+        let says = |line: &[u8]| !line.trim_ascii().is_empty() && !line.starts_with(b"#");
+        let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+        while self.pending().len() < HEAD
+            && !self.ended
+            && !self.pending().split(is_end).rev().skip(1).any(says)
+        {
             self.fill()?;
         }
         let head = &self.pending()[..HEAD.min(self.end - self.start)];
@@ -244,7 +252,7 @@ impl<R: Read> ClReader<R> {
     fn row_record(&mut self) -> Option<Record<'_>> {
         let line = self.row_line;
         let (statement, raw) = match self.points.as_mut()? {
-            PointList::Csv(list) => (list.records.next()?, &self.buffer[self.row.clone()]),
+            PointList::Csv(list) => (list.records.next()?, self.row_text.as_slice()),
             PointList::Json { text, list } => {
                 (list.records.next()?, text.get(self.row.clone())?.as_bytes())
             }
@@ -268,9 +276,8 @@ impl<R: Read> ClReader<R> {
             let Some(PointList::Csv(list)) = &mut self.points else {
                 return Ok(false);
             };
-            self.row_line = line;
             if over {
-                self.row = self.start..self.start;
+                // The end is told on the last line: the next one may be another file's.
                 if list.end() {
                     self.points = None;
                     return Ok(false);
@@ -288,13 +295,16 @@ impl<R: Read> ClReader<R> {
                 let fault = fault.help("a point has a line of its own");
                 return Err(SyntaxFault { line, ..fault }.into());
             }
-            self.row = self.start..self.start + physical.end;
-            let text = decode(&self.buffer[self.row.clone()]);
+            let raw = &self.buffer[self.start..self.start + physical.end];
             // Old DOS systems end a text file with 0x1A.
-            if matches!(text.trim(), "" | "\x1A") {
+            if matches!(raw.trim_ascii(), b"" | b"\x1A") {
                 self.consume(&physical, 1);
                 continue;
             }
+            self.row_text.clear();
+            self.row_text.extend_from_slice(raw);
+            self.row_line = line;
+            let text = decode(&self.row_text);
             let (taken, has_header) = (list.take(&text), list.has_header());
             let ended = self.ended && physical.next == physical.end;
             let text = ended.then(|| text.into_owned());

@@ -9,7 +9,7 @@ mod common;
 use std::collections::BTreeMap;
 
 use post_grammar::nc::{NcSyntax, Notation};
-use post_plugin::{Capabilities, Language, Lengths, Meaning, VocabularyWord};
+use post_plugin::{AxisWords, Capabilities, Language, Lengths, Meaning, VocabularyWord};
 
 use crate::g_code::GCode;
 use crate::interpret::ModalGroup;
@@ -56,6 +56,8 @@ pub struct Lexicon {
     /// Names that mean this where nothing stands between their parentheses.
     empty: BTreeMap<String, Meaning>,
     choices: Vec<CodeChoice>,
+    /// Codes of which it is said what words of axes are to them, beside what they mean.
+    axis_words: Vec<(GCode, AxisWords)>,
     writes: Capabilities,
     /// A word changes the tool; else T does.
     changes_by_word: bool,
@@ -90,6 +92,7 @@ impl Lexicon {
             names: BTreeMap::new(),
             empty: BTreeMap::new(),
             choices: Vec::new(),
+            axis_words: Vec::new(),
             modes: match language {
                 // They count in their own units, and have none of the other modes.
                 Language::Joints => ModalGroup::of_robots(words),
@@ -197,6 +200,24 @@ impl Lexicon {
         best.map_or_else(|| self.g(code), |choice| WordMeaning::Means(choice.meaning))
     }
 
+    /// What words of axes are to a G code, which means `meaning` beside the words of its block.
+    pub(crate) fn axis_words(&self, code: GCode, meaning: Meaning) -> AxisWords {
+        let mut said = self.axis_words.iter();
+        if let Some((_, said)) = said.find(|(known, _)| *known == code) {
+            return *said;
+        }
+        let alone = match self.g(code) {
+            WordMeaning::Means(alone) => alone.axis_words(),
+            WordMeaning::Unknown | WordMeaning::Refused => AxisWords::Lead,
+        };
+        match (alone, meaning.axis_words()) {
+            // Another word gives it another sense: whose they are then is not said.
+            (AxisWords::Own, AxisWords::Lead) => AxisWords::None,
+            (AxisWords::None, AxisWords::Lead) => AxisWords::None,
+            (_, own) => own,
+        }
+    }
+
     /// A constant cutting speed is a kind of the feed, and every other kind ends it: G94, G95, G96, G961 of Siemens are of
     /// one group.
     pub(crate) fn speed_goes_with_feed(&self) -> bool {
@@ -295,6 +316,17 @@ impl Lexicon {
             self.names.insert(name.trim_end_matches('=').to_owned(), sense);
             return;
         };
+        if let (
+            WordMeaning::Means(said @ (Meaning::OwnAxisWords | Meaning::NoAxisWords)),
+            VocabularyCode::G(code),
+        ) = (sense, code)
+        {
+            self.axis_words.retain(|(known, _)| *known != code);
+            self.axis_words.push((code, said.axis_words()));
+            if self.g(code) != WordMeaning::Unknown {
+                return;
+            }
+        }
         let beside: Vec<(u8, Option<f64>)> = parts.filter_map(beside).collect();
         let place = self.place(sense);
         let entry = match code {
@@ -305,6 +337,13 @@ impl Lexicon {
         if let Some(entry) = entry
             && (*entry == 0 || beside.is_empty() || matches!(code, VocabularyCode::M(_)))
         {
+            // What the language says of a code does not hold where the dialect's means something else.
+            if let VocabularyCode::G(code) = code
+                && *entry != 0
+                && *entry != place
+            {
+                self.axis_words.retain(|(known, _)| *known != code);
+            }
             *entry = place;
         }
         if let (VocabularyCode::G(code), WordMeaning::Means(meaning), false) =

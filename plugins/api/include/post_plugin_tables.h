@@ -183,6 +183,8 @@
 #define POST_MEANING_TOOL_FRAME 211u
 #define POST_MEANING_OWN_TOOL_FRAME 212u
 #define POST_MEANING_TOOL_AND_FRAME 213u
+#define POST_MEANING_OWN_AXIS_WORDS 214u
+#define POST_MEANING_NO_AXIS_WORDS 215u
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");

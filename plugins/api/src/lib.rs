@@ -143,7 +143,7 @@ pub use setup::{
 };
 pub use standstill::Standstill;
 pub use text::{ascii, remark, wrapped};
-pub use vocabulary::{Meaning, VocabularyWord};
+pub use vocabulary::{AxisWords, Meaning, VocabularyWord};
 
 /// What tests look into; no part of the contract.
 #[doc(hidden)]

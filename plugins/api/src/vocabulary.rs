@@ -51,6 +51,48 @@ impl Meaning {
     }
 }
 
+/// What the words of axes of a block are to a code that stands in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AxisWords {
+    /// They say where the motion of the block leads, whatever the code does.
+    Lead,
+    /// They are the code's own.
+    Own,
+    /// They do not belong there.
+    None,
+}
+
+impl Meaning {
+    /// What words of axes are to a code of this meaning, where its dialect says nothing else of it
+    /// ([`Meaning::OwnAxisWords`], [`Meaning::NoAxisWords`]).
+    pub const fn axis_words(self) -> AxisWords {
+        match self {
+            Meaning::OwnAxisWords
+            | Meaning::ReferenceReturn
+            | Meaning::OtherReferenceReturn
+            | Meaning::LocalOffset
+            | Meaning::LocalOffsetAdded
+            | Meaning::SetPosition
+            | Meaning::SetPositionOff
+            | Meaning::TableData
+            | Meaning::Rotation
+            | Meaning::RotationAdded
+            | Meaning::Scale
+            | Meaning::Mirror
+            | Meaning::TiltedPlane
+            | Meaning::Macro
+            | Meaning::MacroModal => AxisWords::Own,
+            Meaning::NoAxisWords
+            | Meaning::ScaleOff
+            | Meaning::MirrorOff
+            | Meaning::FaceTransformationOff
+            | Meaning::MacroOff
+            | Meaning::TableDataOff => AxisWords::None,
+            _ => AxisWords::Lead,
+        }
+    }
+}
+
 codes! {
     /// What a word of a program means.
     Meaning "MEANING" {
@@ -392,5 +434,10 @@ codes! {
         OwnToolFrame = 212 "OWN_TOOL_FRAME",
         /// Tool and frame of an arm by numbers or from the control's defaults: BAS.
         ToolAndFrame = 213 "TOOL_AND_FRAME",
+        /// The words of axes beside the word are its own, and nothing moves: G22, which guards an area, G50.1. It stands
+        /// behind what the word means otherwise.
+        OwnAxisWords = 214 "OWN_AXIS_WORDS",
+        /// The word stands in a block without words of axes: G23. It stands behind what the word means otherwise.
+        NoAxisWords = 215 "NO_AXIS_WORDS",
     }
 }

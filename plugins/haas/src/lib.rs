@@ -77,6 +77,7 @@ const SMOOTHING: [&str; 2] = ["0 G187 P3 E{}\n0.02 G187 P2 E{}\n0.1 G187 P1 E{}"
 /// Words that it reads and that are not written here. G87 and G88 bore and wait for a hand, and G69 ends no plane.
 const OWN: &[(&str, Meaning)] = &[
     ("G28", Meaning::ReferenceReturn),
+    ("G187 E", Meaning::Smoothing),
     ("G44", Meaning::LengthNegative),
     ("G68", Meaning::Rotation),
     ("G69", Meaning::RotationOff),
@@ -84,6 +85,7 @@ const OWN: &[(&str, Meaning)] = &[
     ("G50", Meaning::ScaleOff),
     ("G101", Meaning::Mirror),
     ("G100", Meaning::MirrorOff),
+    ("G100", Meaning::OwnAxisWords),
     ("G107", Meaning::CylinderTransformation),
     ("G112", Meaning::FaceTransformation),
     ("G113", Meaning::FaceTransformationOff),

@@ -88,6 +88,7 @@ const OWN: &[(&str, Meaning)] = &[
     ("G28", Meaning::ReferenceReturn),
     ("G54.1", Meaning::WorkOffset),
     ("G8.2", Meaning::Nothing),
+    ("G8.2", Meaning::NoAxisWords),
     ("G68.2", Meaning::TiltedPlane),
     ("G68.3", Meaning::TiltedPlane),
     ("G69", Meaning::TiltedPlaneOff),

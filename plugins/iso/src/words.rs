@@ -19,7 +19,12 @@ pub const FRAMES: &[(&str, Meaning)] = &[
     ("G50", Meaning::ScaleOff),
     ("G51.1", Meaning::Mirror),
     ("G50.1", Meaning::MirrorOff),
+    ("G50.1", Meaning::OwnAxisWords),
 ];
+
+/// Areas that the axes keep out of.
+pub const AREAS: &[(&str, Meaning)] =
+    &[("G22", Meaning::OwnAxisWords), ("G23", Meaning::NoAxisWords)];
 
 /// Coordinates that are no positions of linear axes.
 pub const POLAR: &[(&str, Meaning)] = &[

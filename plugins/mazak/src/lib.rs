@@ -80,6 +80,7 @@ const OWN: &[(&str, Meaning)] = &[
     ("G68", Meaning::Rotation),
     ("G68.2", Meaning::TiltedPlane),
     ("G5", Meaning::Smoothing),
+    ("G5", Meaning::NoAxisWords),
     ("G76", Meaning::CycleBoreFine),
     ("G87", Meaning::CycleBoreBack),
     ("G84.2", Meaning::CycleTap),

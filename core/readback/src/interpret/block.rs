@@ -5,7 +5,7 @@
 
 use post_grammar::nc::NcBlock;
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{Language, Meaning};
+use post_plugin::{AxisWords, Language, Meaning};
 
 use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
@@ -55,7 +55,7 @@ pub(super) struct BlockRequest {
     pub tcp_off: bool,
     /// The tool is changed.
     pub change: bool,
-    /// M0 that changes the tool beside T, and alone stops the program as everywhere.
+    /// M0 that changes the tool beside T or right behind it, and alone stops the program as everywhere.
     pub change_or_stop: bool,
     /// Spindle from here on.
     pub spindle: Option<SpindleRequest>,
@@ -71,6 +71,12 @@ pub(super) struct BlockRequest {
     pub probe: bool,
     /// Whether this block goes at rapid.
     pub rapid: bool,
+    /// The first code that has the words of axes for itself.
+    pub own_axis_words: Option<GCode>,
+    /// Another one.
+    pub also_own: Option<GCode>,
+    /// A code beside which no words of axes stand.
+    pub no_axis_words: Option<GCode>,
 }
 
 /// Words of axes that no machine here has need to be said: they would move something.
@@ -112,7 +118,9 @@ pub(super) fn run(
         control.m_code(words.m.list()[index], &mut asked)?;
     }
     if asked.change_or_stop {
-        match words.present & bit(b'T') != 0 {
+        // T in a block ahead of it, and nothing has moved since.
+        let ready = control.tools.ready_at == Some(control.at.joints);
+        match words.present & bit(b'T') != 0 || ready {
             true => asked.change = true,
             false => asked.stop = Some(Meaning::Stop),
         }
@@ -210,7 +218,17 @@ impl ControlState {
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
         match sense {
-            WordMeaning::Means(meaning) => self.meant(Some(code), meaning, words, asked),
+            WordMeaning::Means(meaning) => {
+                match self.lexicon.axis_words(code, meaning) {
+                    AxisWords::Lead => {}
+                    AxisWords::Own if asked.own_axis_words.is_none() => {
+                        asked.own_axis_words = Some(code)
+                    }
+                    AxisWords::Own => asked.also_own = Some(code),
+                    AxisWords::None => asked.no_axis_words = Some(code),
+                }
+                self.meant(Some(code), meaning, words, asked)
+            }
             WordMeaning::Refused => Err(self.not_followed(Some(code))),
             WordMeaning::Unknown => {
                 let help = "a G code may change where the machine goes, so none is passed over";
@@ -382,6 +400,7 @@ impl ControlState {
             }
         }
         self.alone_on_face(asked)?;
+        self.own_axis_words(words, asked)?;
         if let Some((code, meaning)) = asked.frame {
             return frames::code(self, code, meaning, words);
         }
@@ -423,6 +442,49 @@ impl ControlState {
             return cycles::hole(self, None, None, words);
         }
         self.plain_motion(words, asked.rapid)
+    }
+
+    /// Words of axes that belong to a code of the block lead nowhere: what the code does with them is its own part, and where
+    /// it has none, they are done with. Two codes that would have them, or one that has none, are refused.
+    #[inline]
+    fn own_axis_words(
+        &self,
+        words: &mut BlockWords,
+        asked: &BlockRequest,
+    ) -> Result<(), Box<Diagnostic>> {
+        if asked.own_axis_words.is_none() && asked.no_axis_words.is_none() {
+            return Ok(());
+        }
+        let axes = AXIS_LETTERS | self.axes.mask;
+        if words.present & axes == 0 && words.vector.is_none() && words.named_axes == 0 {
+            return Ok(());
+        }
+        if let Some(code) = asked.no_axis_words {
+            let message = format!(
+                "{code} beside words of axes is not run: whether they move anything is not settled"
+            );
+            return Err(self.refuse("nc-word", message));
+        }
+        if let (Some(code), Some(other)) = (asked.own_axis_words, asked.also_own) {
+            let message = format!(
+                "{code} and {other} in one block: both have the words of axes for themselves"
+            );
+            return Err(self.refuse("nc-word", message));
+        }
+        let moves = asked.machine || asked.cycle.is_some() || asked.thread.is_some();
+        if let (Some(code), true) = (asked.own_axis_words, moves) {
+            let message = format!(
+                "{code} has the words of axes for itself, and another word of the block moves them"
+            );
+            return Err(self.refuse("nc-word", message));
+        }
+        let taken = asked.frame.is_some() || asked.plane.is_some() || asked.reference.is_some();
+        if !taken {
+            words.present &= !(axes | SHAPES);
+            words.vector = None;
+            words.named_axes = 0;
+        }
+        Ok(())
     }
 
     /// A motion as the modal word says.

@@ -37,6 +37,7 @@ impl ControlState {
             } else {
                 self.tools.ready = Some(number);
                 self.tools.ready_name = None;
+                self.tools.ready_at = Some(self.at.joints);
                 if !self.lexicon.changes_by_word() {
                     self.change_tool(Some(number), None)?;
                 } else if !asked.change {

@@ -14,6 +14,8 @@ use crate::ProgramEvent;
 pub(super) struct ToolState {
     /// The tool that is made ready, or that M6 will bring.
     pub ready: Option<u32>,
+    /// Where the axes stood at the block that named it.
+    pub ready_at: Option<Joints>,
     /// Name of the tool that is made ready, where it is called by one.
     pub ready_name: Option<String>,
     /// Length compensation is on.
@@ -46,6 +48,7 @@ impl ControlState {
         }
         self.state.tool = number;
         self.tools.longer = 0.0;
+        self.tools.ready_at = None;
         self.state.standstill.change = Some(self.line);
         self.state_changed();
         self.tell(ProgramEvent::ToolChange { number, name });

@@ -180,6 +180,8 @@ pub struct DialectVocabulary {
     pub most_inverse_time: Option<f64>,
     /// Decimals of a feed a minute.
     pub feed_decimals: u8,
+    /// Decimals of a feed by time, if it writes any.
+    pub inverse_time_decimals: Option<u8>,
 }
 
 impl DialectVocabulary {
@@ -218,6 +220,7 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<DialectVocabulary, F
         writes: dialect.capabilities(),
         most_inverse_time: dialect.format().most_inverse_time,
         feed_decimals: dialect.format().feed,
+        inverse_time_decimals: dialect.format().inverse_time,
     })
 }
 

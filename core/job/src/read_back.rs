@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::thread;
 
 use post_host::Finder;
-use post_machine::description::{Machine, OutputUnits, Rapid, TextPlace};
+use post_machine::description::{InverseTime, Machine, OutputUnits, Rapid, TextPlace};
 use post_machine::diagnostic::{Diagnostic, Severity, SourceFiles, SourcePlace};
 use post_plugin::{Lengths, Meaning};
 use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
@@ -178,6 +178,15 @@ fn feed_place(machine: &Machine, decimals: u8) -> f64 {
         OutputUnits::Inch => 25.4,
     };
     unit * libm::pow(0.1, f64::from(decimals))
+}
+
+/// The last place of an F by time, 1/min; zero where the dialect writes none.
+fn time_place(machine: &Machine, decimals: Option<u8>) -> f64 {
+    let unit = match machine.control.inverse_time {
+        InverseTime::Minutes => 1.0,
+        InverseTime::Seconds => 60.0,
+    };
+    decimals.map_or(0.0, |decimals| unit * libm::pow(0.1, f64::from(decimals)))
 }
 
 /// Holds the program `name` from `input` against the CL file.
@@ -456,6 +465,7 @@ fn rules(reading: &ReadingSetup<'_>, control: &NcControl, tools: &[ClTool]) -> V
         own: reading.own && machine.program.text(TextPlace::Retract).is_none(),
         own_stops: own_stops(machine, control),
         feed_place: feed_place(machine, spoken.feed_decimals),
+        time_place: time_place(machine, spoken.inverse_time_decimals),
         linear_rapids: machine.rapid(spoken.rapids_pass()) == Rapid::Linear,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),
         tool_registers: tools.iter().map(|tool| (tool.number, tool.register)).collect(),

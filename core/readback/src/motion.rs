@@ -46,6 +46,8 @@ pub struct Motion {
     /// How long it would take as fast as it is anywhere on its way: less than `minutes` where its feed is one a revolution
     /// and the control changes the speed of the spindle.
     pub minutes_at_fastest: f64,
+    /// F says its time, and no feed: inverse time.
+    pub by_time: bool,
     /// The axes stand still at its end, whatever else holds: G9.
     pub stops: bool,
     /// It is part of a cycle's hole.

@@ -5,10 +5,11 @@ use post_machine::axis_words::is_depth;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
 use post_motion::path::BSpline;
+use post_plugin::Language;
 use std::f64::consts::TAU;
 
 use super::feed::MotionTime;
-use super::state::{AxisLetters, ControlState, OrientationMode};
+use super::state::{AxisLetters, ControlState, FeedMeaning, OrientationMode};
 use crate::{BlockEffect, Curve, Interpolation, Motion, MotionKind, Stance};
 
 /// A tip that the axes miss by more than this is not reached, mm.
@@ -520,6 +521,9 @@ impl ControlState {
             feed,
             minutes,
             minutes_at_fastest: at_fastest,
+            by_time: kind == MotionKind::Feed
+                && self.modal.feed_mode == FeedMeaning::Inverse
+                && self.lexicon.language() != Language::Joints,
             stops: self.exact_stop,
             hole: self.hole,
             machine: self.in_machine,

@@ -47,8 +47,16 @@ impl<C: Course> Verifier<'_, C> {
             return false;
         }
         let feed = way_of(places) / motion.minutes;
-        let place = self.rules.feed_place.max(PLACE);
-        feed <= asked * (1.0 + SHARE) + PLACE && feed >= asked * (1.0 - SHARE) - place
+        let [above, below] = self.places(motion);
+        feed <= asked * (1.0 + SHARE) + above && feed >= asked * (1.0 - SHARE) - below
+    }
+
+    /// What the last place of a feed makes upwards and downwards, mm/min: that of a time is a share of it.
+    fn places(&self, motion: &Motion) -> [f64; 2] {
+        match motion.by_time {
+            true => [0.0; 2],
+            false => [PLACE, self.rules.feed_place.max(PLACE)],
+        }
     }
 
     /// The feed of an element, or of another that a motion lies on as a whole, if that is larger: what is left of a
@@ -133,10 +141,10 @@ impl<C: Course> Verifier<'_, C> {
             true => way.min((places[places.len() - 1].point - places[0].point).norm()),
             false => way,
         };
-        if counted / motion.minutes > asked * (1.0 + SHARE + rounded) + PLACE {
+        let [above, place] = self.places(motion);
+        if counted / motion.minutes > asked * (1.0 + SHARE + rounded) + above {
             return FeedVerdict::Above(feed);
         }
-        let place = self.rules.feed_place.max(PLACE);
         if feed >= asked * (1.0 - SHARE - rounded) - place {
             return FeedVerdict::AsAsked;
         }
@@ -161,11 +169,16 @@ impl<C: Course> Verifier<'_, C> {
     fn rounded_share(&self, motion: &Motion, way: f64) -> f64 {
         // Of a short way a rounded word is much.
         let mut rounded = ROUNDED / way;
+        if motion.by_time {
+            rounded += (self.rules.time_place * motion.minutes).min(MOST_ROUNDED);
+        }
         if motion.way == Interpolation::Axes {
             // What is printed is the feed along the axes, which may go a much shorter way than the tip; of rotary axes alone
             // it counts degrees. Rounded down, so that it is never above what is asked.
-            let along = printed_way(motion).max(1e-6);
-            rounded += (2.0 * PLACE * motion.minutes / along).min(MOST_ROUNDED);
+            if !motion.by_time {
+                let along = printed_way(motion).max(1e-6);
+                rounded += (2.0 * PLACE * motion.minutes / along).min(MOST_ROUNDED);
+            }
             // Where rotary axes turn the tip goes another way than the points that its time was counted by, within the
             // tolerance.
             if turns(motion) {

@@ -92,6 +92,8 @@ pub struct VerifyRules {
     pub linear_rapids: bool,
     /// The last place of a printed feed, mm/min: it is rounded down.
     pub feed_place: f64,
+    /// The last place of a printed F by time, 1/min.
+    pub time_place: f64,
     /// The feed was planned: it may be below that of the CL file, whatever for.
     pub planned: bool,
     /// Coolants are compared; else which of them flows is the program's own business.
@@ -152,6 +154,7 @@ impl VerifyRules {
             least_minutes: 0.0,
             linear_rapids: machine.rapid(false) == Rapid::Linear,
             feed_place: 0.0,
+            time_place: 0.0,
             planned: false,
             files: SourceFiles::default(),
             coolants: true,

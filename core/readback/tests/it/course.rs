@@ -60,6 +60,7 @@ fn motion(state: &Arc<MachineState>, way: Interpolation, from: Joints, to: Joint
         feed: 1000.0,
         minutes: 0.1,
         minutes_at_fastest: 0.1,
+        by_time: false,
         stops: false,
         hole: false,
         machine: false,

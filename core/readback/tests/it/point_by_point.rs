@@ -96,6 +96,7 @@ fn program(
             feed: 500.0,
             minutes: (ends[1].tip - ends[0].tip).norm() / 500.0,
             minutes_at_fastest: (ends[1].tip - ends[0].tip).norm() / 500.0,
+            by_time: false,
             stops: false,
             hole: false,
             machine: false,

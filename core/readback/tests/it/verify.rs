@@ -187,6 +187,7 @@ impl Does {
             feed: 500.0,
             minutes,
             minutes_at_fastest: minutes,
+            by_time: false,
             stops: false,
             hole: false,
             machine: false,

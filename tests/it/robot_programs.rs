@@ -301,6 +301,34 @@ fn tools_are_led_straight_and_read_back() {
             };
             let read = verify(file);
             assert_eq!((read.code, read.err.as_str()), (0, ""), "{dialect}: {}", read.out);
+            // What axes beside the arm are written as that it has not, and what a straight move does not look at.
+            let (old, said, moved) = match dialect {
+                "krl" => ("}", ",S 6,T 27,E1 0,E2 0}", ",E1 5}"),
+                "rapid" => ("[9E9,", "[0,", "[5,"),
+                _ => ("", "", ""),
+            };
+            if !old.is_empty() {
+                assert!(program.contains(old), "{program}");
+                for (said, code) in [(said, 0), (moved, 1)] {
+                    let lines = program.lines().map(|line| {
+                        match line.trim_start().starts_with(['L', 'M']) {
+                            true => line.replace(old, said) + "\n",
+                            false => line.to_owned() + "\n",
+                        }
+                    });
+                    fs::write(path.join("other.txt"), lines.collect::<String>()).unwrap();
+                    let read = verify("other.txt");
+                    assert_eq!(read.code, code, "{dialect} {said}: {}", read.err);
+                }
+            }
+            if dialect == "krl" {
+                for (command, code) in [("#ACC_ORI,50", 0), ("#OTHER,50", 1)] {
+                    let other = program.replacen("LIN ", &format!("BAS ({command})\nLIN "), 1);
+                    fs::write(path.join("other.txt"), other).unwrap();
+                    let read = verify("other.txt");
+                    assert_eq!(read.code, code, "{command}: {}", read.err);
+                }
+            }
             // A tenth of a millimetre and more across one cut.
             let (tip, _) = poses[poses.len() / 2];
             let (old, new) = match dialect {

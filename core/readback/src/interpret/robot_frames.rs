@@ -34,7 +34,7 @@ impl ControlState {
     }
 
     /// `BAS(#TOOL,3)` and `BAS(#BASE,0)` set one of both by its number; `BAS(#INITMOV,0)` and `BAS(#FRAMES)` both from the
-    /// control's defaults, which no program says; the others neither.
+    /// control's defaults, which no program says; those that set accelerations and speeds of joints neither.
     pub(super) fn set_robot_frames(&mut self, terms: &[NcTerm]) -> Result<(), Box<Diagnostic>> {
         let [NcTerm::Group(b'(', inside)] = terms else {
             return Err(self.refuse("nc-statement", "what BAS sets is not understood"));
@@ -53,17 +53,22 @@ impl ControlState {
         match command.trim_start_matches('#') {
             "TOOL" => self.robot_frame_is(ModalGroup::ToolFrame, numbered("TOOL_DATA")),
             "BASE" => self.robot_frame_is(ModalGroup::BaseFrame, numbered("BASE_DATA")),
-            "VEL_PTP" | "ACC_CP" | "ACC_PTP" | "ACC_ROT" | "PTP_DAT" => {}
+            "VEL_PTP" | "ACC_CP" | "ACC_PTP" | "ACC_ROT" | "ACC_ORI" | "PTP_DAT" => {}
             // KUKA's BAS.SRC sets $VEL.CP and its like in these.
             "VEL_CP" | "VEL_ROT" | "CP_DAT" | "CP_PARAMS" => {
                 let message =
                     format!("BAS({command}) sets speeds of straight moves: that is not followed");
                 return Err(self.refuse("nc-statement", message));
             }
-            _ => {
+            "INITMOV" | "FRAMES" | "PTP_PARAMS" | "EX_BASE" => {
                 let both = ModalGroup::ToolFrame.bit() | ModalGroup::BaseFrame.bit();
                 self.robot_frames = RobotFrames::default();
                 self.modal.unset |= self.lexicon.modes() & both;
+            }
+            _ => {
+                let message =
+                    format!("BAS({command}) is not known here, and may set tool, frame or speed");
+                return Err(self.refuse("nc-statement", message));
             }
         }
         Ok(())

@@ -450,8 +450,9 @@ fn straight_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> An
     };
     let mut start = control.at.joints;
     for position in &beside {
-        let axis = axis_of(control, position)?;
-        start[axis] = control.shown(axis, position.value);
+        if let Some(axis) = axis_of(control, position)? {
+            start[axis] = control.shown(axis, position.value);
+        }
     }
     let joints = control.state.solver.search_stand(&wanted, &start, STANDS);
     let Some(joints) = joints else {
@@ -481,11 +482,15 @@ struct PoseTarget {
     beside: Vec<JointPosition>,
 }
 
-/// The axis of the machine that a robot's control leads to a position.
-fn axis_of(control: &ControlState, position: &JointPosition) -> Answer<usize> {
+/// The axis of the machine that a robot's control leads to a position; none of one beside the arm that the machine has not,
+/// and that stands at zero: some programs write all six.
+fn axis_of(control: &ControlState, position: &JointPosition) -> Answer<Option<usize>> {
     let JointPosition { place, value } = *position;
     let axis = control.machine.axes.iter().position(|axis| arm_axis(&axis.name) == Some(place));
-    axis.ok_or_else(|| {
+    if axis.is_none() && value == 0.0 && place >= ARM_JOINTS {
+        return Ok(None);
+    }
+    axis.map(Some).ok_or_else(|| {
         let message = format!(
             "{} has no axis {} of a robot, and the program leads it to {value}",
             control.machine.name,
@@ -549,6 +554,10 @@ fn named_pose(inside: &[NcTerm]) -> Option<PoseTarget> {
             beside.push(JointPosition { place, value: number.value });
             continue;
         }
+        // Status and turn choose among the stances of an arm, and a straight move keeps its own.
+        if matches!(name.as_str(), "S" | "T") {
+            continue;
+        }
         let place = "XYZABC".find(name.as_str()).filter(|_| name.len() == 1)?;
         said[place] = Some(number.value);
     }
@@ -576,6 +585,7 @@ fn go(control: &mut ControlState, target: &JointTarget, pace: Pace) -> Answer<()
             Err(_) if position.value == 0.0 && !target.some => continue,
             axis => axis?,
         };
+        let Some(axis) = axis else { continue };
         joints[axis] = control.shown(axis, position.value);
         said |= 1 << axis;
     }

@@ -65,6 +65,7 @@ fn each_rule_is_told_at_its_line_and_a_good_program_breaks_none() {
         ("X40.\nZ-8.", "X40. M9\nZ-8.", "coolant", 27),
         ("G43 H2 Z50.", "G0 Z50.", "length", 25),
         ("G43 H1 Z50.", "G0 Z50.", "length", 9),
+        ("X60.\n", "G49 X60.\n", "length", 13),
         ("G43 H2", "G43 H1", "length", 25),
         ("G43 H2", "G43 H3", "register", 25),
         ("G43 H1", "G43 H2", "register", 12),
@@ -85,6 +86,13 @@ fn each_rule_is_told_at_its_line_and_a_good_program_breaks_none() {
         assert!(told.contains(&(code.to_owned(), line)), "{from:?} as {to:?}: {told:?}\n{found:#}");
         assert_eq!(exit, 1);
     }
+}
+
+#[test]
+fn smoothing_beyond_the_tolerance_is_told() {
+    let program = GOOD.replacen("%\nO1\n", "", 1).replacen("G54\n", "G54\nG64 P1\n", 1);
+    let (_folder, _, found) = linted(&program, "[control]\ndialect = \"linuxcnc\"\n", &[]);
+    assert!(told(&found).contains(&("smoothing".to_owned(), 11)), "{found:#}");
 }
 
 /// Where the stock is known it is proven what a rapid hits, and not guessed.

@@ -248,6 +248,145 @@ fn smoothing_beyond_the_tolerance_is_told() {
     assert_ne!(text, linuxcnc.text);
     let changed = linuxcnc.verify(&text, &[]);
     assert!(changed.err.contains(more), "{}", changed.err);
+    let any = "warning[smoothing]: the control may leave the path by any distance, and the tolerance is 0.005 mm";
+    linuxcnc.told(("G61\n", "G64\n"), any);
+    for words in ["G641 ADIS=1", "G641\nADIS=1", "G642 CTOL=1", "G645 CTOL=1"] {
+        siemens.told(("G54\n", &format!("G54\n{words}\n")), more);
+    }
+    // Nothing is rounded within no distance, and ADIS says nothing of G642.
+    for words in ["G641", "G642 ADIS=1"] {
+        let text = siemens.text.replacen("G54\n", &format!("G54\n{words}\n"), 1);
+        let changed = siemens.verify(&text, &[]);
+        assert!(!changed.err.contains("smoothing"), "{words}: {}", changed.err);
+    }
+    let fagor = Posted::new(CONTOUR, "fagor");
+    fagor.told(("G54\n", "G54\n#HSC ON [CONTERROR 1]\n"), more);
+    let haas = Posted::new(CONTOUR, "haas");
+    haas.told(("G54\n", "G54\nG187 E1.\n"), more);
+}
+
+/// Between two cuts the tool goes up, and across there.
+const UP_AND_ACROSS: &str = "\
+TOOL PATH/A,TOOL,T1
+LOAD/TOOL,1,ADJUST,1
+SPINDL/RPM,3000,CLW
+RAPID
+GOTO/0,0,60,0,0,1
+RAPID
+GOTO/0,0,5
+FEDRAT/MMPM,600
+GOTO/0,0,-2
+GOTO/20,0,-2
+RAPID
+GOTO/20,0,55
+RAPID
+GOTO/-20,-20,55
+GOTO/-20,-20,0
+RAPID
+GOTO/-20,-20,60
+END-OF-PATH
+FINI
+";
+
+/// The retract's Z belongs to another code of the block, and the tool stays down.
+#[test]
+fn words_of_axes_that_a_code_has_for_itself_move_nothing() {
+    let own = [
+        ("fanuc", "G50.1"),
+        ("fanuc", "G22"),
+        ("fanuc", "G5.1 Q1"),
+        ("mazak", "G50.1"),
+        ("mitsubishi", "G22"),
+        ("syntec", "G50.1"),
+        ("haas", "G100"),
+    ];
+    for (dialect, code) in own {
+        let posted = Posted::new(UP_AND_ACROSS, dialect);
+        posted.told(("G0 Z55.000", &format!("G0 {code} Z55.000")), "error[rapid]");
+        // Where they stand for what they are, nothing is wrong.
+        let text = posted.text.replacen("G0 Z55.000", &format!("{code} Z0.\nG0 Z55.000"), 1);
+        let right = posted.verify(&text, &[]);
+        assert_eq!(right.code, 0, "{dialect} {code}: {}", right.err);
+    }
+    let fanuc = Posted::new(UP_AND_ACROSS, "fanuc");
+    for code in ["G23", "G50", "G13.1", "G8 P1", "G92 S3000"] {
+        let text = fanuc.text.replacen("G0 Z55.000", &format!("G0 {code} Z55.000"), 1);
+        let refused = fanuc.verify(&text, &[]);
+        assert!(refused.err.contains("error[nc-word]"), "{code}: {}", refused.err);
+    }
+    let text = fanuc.text.replacen("G0 Z55.000", "G28 G50.1 Z55.000", 1);
+    let refused = fanuc.verify(&text, &[]);
+    assert!(refused.err.contains("have the words of axes for themselves"), "{}", refused.err);
+    let area = "G22 X500. Y500. Z500. I-500. J-500. K-500.\nG23\nG54";
+    let right = fanuc.verify(&fanuc.text.replacen("G54", area, 1), &[]);
+    assert_eq!(right.code, 0, "{}", right.err);
+}
+
+/// Without a changer the operator changes at M0, beside T or in the block behind it.
+#[test]
+fn the_stop_behind_t_changes_the_tool() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [cl, nc] = ["part.cls", "part.nc"].map(path);
+    let text = UP_AND_ACROSS.replace("END-OF-PATH\nFINI\n", "");
+    fs::write(
+        &cl,
+        text.clone()
+            + "END-OF-PATH\n"
+            + &text.replace("T1", "T2").replace("TOOL,1,ADJUST,1", "TOOL,2,ADJUST,2")
+            + "END-OF-PATH\nFINI\n",
+    )
+    .unwrap();
+    let job = ["-m", "grbl-router", "--tool-length", "50"];
+    let run = post(&[&["-q", "--verify", "-o", &nc, &cl][..], &job].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let text = fs::read_to_string(&nc).unwrap();
+    let verify = |text: String| {
+        fs::write(&nc, text).unwrap();
+        post(&[&["verify", "-q", &nc, "--against", &cl][..], &job].concat())
+    };
+    assert!(text.contains("T2 M0\n"), "{text}");
+    let behind = verify(text.replace("T2 M0\n", "T2\nM0\n"));
+    assert_eq!(behind.code, 0, "{}", behind.err);
+    let other = verify(text.replace("T2 M0\n", "T1\nM0\n"));
+    assert!(other.err.contains("error[tool]"), "{}", other.err);
+    let stop = verify(text.replacen("G0 Z55.000\n", "G0 Z55.000\nM0\n", 1));
+    assert!(stop.err.contains("error[event]: a stop"), "{}", stop.err);
+}
+
+/// The tip goes slowly while the table swings, so that F by time is a small number, but no rounded one.
+#[test]
+fn a_wrong_feed_by_time_is_no_rounded_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [cl, nc] = ["part.cls", "part.nc"].map(path);
+    let text = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,4000,CLW\nRAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/MMPM,0.5\nGOTO/0,0,5\n\
+        GOTO/0,4,5,0,0.5,0.8660254\nGOTO/0,8,5,0,0.7071068,0.7071068\nRAPID\nGOTO/0,40,60\nFINI\n";
+    fs::write(&cl, text).unwrap();
+    let job = ["-m", "ac-trunnion", "--tool-length", "100", "--set", "control.tcp=post"];
+    let run = post(&[&["-q", "--verify", "-o", &nc, &cl][..], &job].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let text = fs::read_to_string(&nc).unwrap();
+    for factor in [0.1, 0.5, 1.5, 1.9] {
+        let mut by_time = false;
+        let changed: String = text
+            .lines()
+            .map(|line| {
+                by_time = (by_time || line.contains("G93")) && !line.contains("G94");
+                match line.rsplit_once('F').filter(|_| by_time) {
+                    Some((words, feed)) => {
+                        let feed: f64 = feed.parse().unwrap();
+                        format!("{words}F{:.3}\n", factor * feed)
+                    }
+                    None => format!("{line}\n"),
+                }
+            })
+            .collect();
+        assert_ne!(changed, text);
+        fs::write(&nc, &changed).unwrap();
+        let run = post(&[&["verify", "-q", &nc, "--against", &cl][..], &job].concat());
+        assert!(run.code == 1 && run.err.contains("error[feed]"), "{factor}: {}", run.err);
+    }
 }
 
 /// `S7500` turns the spindle as it turned before until the block behind it says how: nothing has moved in between.

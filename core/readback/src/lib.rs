@@ -27,6 +27,7 @@ mod motion;
 mod offsets;
 mod program_event;
 mod run;
+mod smoothing;
 pub mod tasks;
 pub mod verify;
 
@@ -37,6 +38,7 @@ pub use offsets::{Offsets, Reference, WorkOffset};
 pub use post_motion::path::{BSpline, Curve, Interpolation, Stance};
 pub use program_event::{Coolants, CycleCall, CycleKind, ProgramEvent, SpindleState};
 pub use run::{BlockRunner, MOST_FAULTS, ProgramRun};
+pub use smoothing::smooths_beyond;
 
 use std::sync::Arc;
 

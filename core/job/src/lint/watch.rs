@@ -7,7 +7,9 @@ use post_machine::check::number;
 use post_machine::description::LengthAxis;
 use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 use post_plugin::Lengths;
-use post_readback::{BlockEffect, Coolants, Curve, Motion, MotionKind, ProgramEvent, SpindleState};
+use post_readback::{
+    BlockEffect, Coolants, Curve, Motion, MotionKind, ProgramEvent, SpindleState, smooths_beyond,
+};
 
 use super::depths::{CutDepths, DeepRapid};
 use crate::nc_program::NcControl;
@@ -32,6 +34,7 @@ enum Rule {
     Register,
     FullCircle,
     Rapid,
+    Smoothing,
 }
 
 /// How a rule is told.
@@ -71,6 +74,11 @@ impl Rule {
                 "rapid",
                 "come down at feed, or see that nothing is in the way; [stock] of the machine file tells",
             ),
+            Self::Smoothing => (
+                Warning,
+                "smoothing",
+                "less of it, or [accuracy] and [program.smoothing] of the machine file as large as what is meant",
+            ),
         };
         RuleText { severity, code, help }
     }
@@ -104,6 +112,10 @@ pub(super) struct LintWatch<'m> {
     tools: [Option<u32>; 2],
     /// The length of the tool was not looked at since it was changed.
     new_tool: bool,
+    /// How far the control may leave the path, mm.
+    off_path: f64,
+    /// The length of the tool in the spindle was in force since it was changed.
+    had_length: bool,
     /// Some tool has a length in force somewhere.
     has_lengths: bool,
     /// The spindle turns somewhere.
@@ -127,6 +139,8 @@ impl<'m> LintWatch<'m> {
             broken: Vec::new(),
             tools: [None; 2],
             new_tool: true,
+            off_path: 0.0,
+            had_length: false,
             has_lengths: false,
             turns: false,
             cooled: false,
@@ -163,6 +177,7 @@ impl<'m> LintWatch<'m> {
                     self.cooled = false;
                 }
                 self.new_tool = true;
+                self.had_length = false;
             }
             BlockEffect::Event { event: ProgramEvent::Coolant(flows), .. } => {
                 self.cooled |= *flows != Coolants::default();
@@ -191,6 +206,7 @@ impl<'m> LintWatch<'m> {
             self.tell(Rule::NoFeed, motion.line, "cuts without a feed: F is missing, or 0");
         }
         self.arc(motion);
+        self.smoothing(motion);
         // Up and away it cuts no more than before.
         let way = motion.to.pose.tip - motion.from.pose.tip;
         if way.dot(&motion.to.pose.axis) <= SHORT {
@@ -227,6 +243,17 @@ impl<'m> LintWatch<'m> {
         self.broken.push(Broken { rule: Rule::Rapid, line, message, count });
     }
 
+    /// Whether the control may leave the path by more than the tolerance of the machine file.
+    fn smoothing(&mut self, motion: &Motion) {
+        let off_path = motion.state.off_path();
+        if off_path != std::mem::replace(&mut self.off_path, off_path) {
+            let machine = &self.control.machine;
+            if let Some(message) = smooths_beyond(off_path, machine, machine.accuracy.tolerance) {
+                self.tell(Rule::Smoothing, motion.line, message);
+            }
+        }
+    }
+
     /// Whether the length of the tool is in force as it comes down, and whose it is as it cuts.
     fn length(&mut self, motion: &Motion) {
         let (machine, state) = (&self.control.machine, &motion.state);
@@ -234,6 +261,7 @@ impl<'m> LintWatch<'m> {
         let register = state.length_register.filter(|register| *register != 0);
         let stated = register.is_some() || state.length != 0.0;
         self.has_lengths |= stated;
+        self.had_length |= stated;
         if !lengths.are_named() || machine.length_axis == LengthAxis::None {
             return;
         }
@@ -248,6 +276,13 @@ impl<'m> LintWatch<'m> {
                 Some(tool) => format!("tool {tool} comes down, and no length of it is in force"),
                 None => "the tool comes down, and no length of it is in force".to_owned(),
             };
+            self.tell(Rule::NoLength, motion.line, message);
+        }
+        if cuts && !stated && std::mem::take(&mut self.had_length) {
+            let tool =
+                state.tool.map_or_else(|| "the tool".to_owned(), |tool| format!("tool {tool}"));
+            let message =
+                format!("{tool} cuts, and its length, which was in force, was taken away");
             self.tell(Rule::NoLength, motion.line, message);
         }
         let ([before, _], line) = (self.tools, motion.line);

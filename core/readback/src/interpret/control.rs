@@ -422,6 +422,8 @@ impl ModalState {
             return_to: ReturnTo::Start,
             return_level: None,
             contour_tolerance: None,
+            rounding_distance: 0.0,
+            rounds_by_distance: false,
             shortest: None,
             orientation: OrientationMode::Usual,
             vectors: false,

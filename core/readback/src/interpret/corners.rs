@@ -10,7 +10,8 @@
 //! | G9 | Fanuc, Siemens | the same, for its block |
 //! | G64 P | LinuxCNC | the path is left by no more than P |
 //! | G64 | all | the path is left, by as much as follows from the control's accelerations |
-//! | G641 to G645, compressors | Siemens | the path is left by no more than CTOL, where that is said |
+//! | G641 | Siemens | the path is left within ADIS of a corner, nothing if it is not said |
+//! | G642 to G645, compressors | Siemens | the path is left by no more than CTOL, where that is said |
 //! | CYCLE832 | Siemens | the path is left by no more than its first argument |
 //! | CYCL DEF 32 T | Heidenhain | the path is left by no more than T |
 //! | G187 E | Haas | the path is left by no more than E |
@@ -28,6 +29,7 @@ use crate::g_code::GCode;
 impl ControlState {
     /// A word that ends smoothing or asks for the exact path; `code` is its G code, if it has one.
     pub(super) fn keeps_corners(&mut self, code: Option<GCode>) {
+        self.modal.rounds_by_distance = false;
         let keeps_path = self.lexicon.has_path_modes();
         self.corners(match (self.lexicon.language(), code.map(GCode::parts)) {
             (Language::Rs274, Some((61, 0))) if keeps_path => Corners::Said(CornerMode::Path),
@@ -52,6 +54,38 @@ impl ControlState {
             (Some(_), _) | (None, true) => Corners::Said(CornerMode::Blend { tolerance }),
             (None, false) => Corners::Own,
         });
+    }
+
+    /// How far the control may leave the path by a word that says `tolerance` mm, or by what was said before it; `code` as
+    /// above.
+    pub(super) fn allowed_off_path(
+        &mut self,
+        code: Option<GCode>,
+        tolerance: Option<f64>,
+    ) -> Option<f64> {
+        let language = self.lexicon.language();
+        self.modal.rounds_by_distance =
+            language == Language::Names && code == Some(GCode::whole(641));
+        match tolerance {
+            // No curve within so far of a corner is farther from it.
+            None if self.modal.rounds_by_distance => Some(self.modal.rounding_distance),
+            // As far as it takes to keep the speed.
+            None if language == Language::Rs274
+                && self.lexicon.has_path_modes()
+                && code == Some(GCode::whole(64)) =>
+            {
+                Some(f64::INFINITY)
+            }
+            said => said,
+        }
+    }
+
+    /// Siemens' ADIS: mm.
+    pub(super) fn rounding_distance(&mut self, distance: f64) {
+        self.modal.rounding_distance = distance * self.modal.unit;
+        if self.modal.rounds_by_distance {
+            self.smooth(Some(self.modal.rounding_distance));
+        }
     }
 
     /// Siemens' CTOL: mm; below zero it gives back what the machine's data say.

@@ -59,7 +59,8 @@ impl ControlState {
                 let tolerance = letter.and_then(|letter| words.take(letter));
                 words.used |= bit(b'P') | bit(b'Q') | bit(b'R');
                 let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
-                self.smooth(tolerance);
+                let allowed = self.allowed_off_path(code, tolerance);
+                self.smooth(allowed);
                 self.leaves_corners(code, tolerance);
             }
             Meaning::SmoothingOff => {

@@ -106,6 +106,10 @@ impl ControlState {
                 let tolerance = worth(self)?;
                 self.contour_tolerance(tolerance);
             }
+            WordMeaning::Means(Meaning::Nothing) if name == "ADIS" => {
+                let distance = worth(self)?;
+                self.rounding_distance(distance);
+            }
             WordMeaning::Means(Meaning::Nothing | Meaning::Smoothing) => {}
             WordMeaning::Means(Meaning::SmoothingOff) => {
                 self.smooth(None);
@@ -236,8 +240,7 @@ impl ControlState {
             }
             (_, WordMeaning::Means(Meaning::Smoothing)) => {
                 let tolerance = match arguments.first() {
-                    // `#HSC ON [CONTERROR 0.01]` says it by a word.
-                    Some(Some(NcValue::Text(_))) => None,
+                    Some(Some(NcValue::Text(words))) => deviation_in(words),
                     Some(Some(value)) => Some(
                         self.variables
                             .worth(value)
@@ -246,7 +249,8 @@ impl ControlState {
                     _ => None,
                 };
                 let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
-                self.smooth(tolerance);
+                let allowed = self.allowed_off_path(None, tolerance);
+                self.smooth(allowed);
                 self.leaves_corners(None, tolerance);
             }
             (
@@ -277,6 +281,15 @@ impl ControlState {
         }
         Ok(())
     }
+}
+
+/// How far the path may be left by the words of an instruction, program units: `CONTERROR 0.01` (Fagor),
+/// `PATH_DEV=0.02 TRACK_DEV=1` (ISG).
+fn deviation_in(words: &str) -> Option<f64> {
+    let behind = |word| words.split_once(word).map(|(_, behind)| behind);
+    let value = behind("CONTERROR").or_else(|| behind("PATH_DEV"))?;
+    let value = value.trim_start_matches(|letter: char| letter == '=' || letter.is_whitespace());
+    value.split(|letter: char| letter == ',' || letter.is_whitespace()).next()?.parse().ok()
 }
 
 /// The word of a work offset whose number stands behind it: `G159` of `G159=7`; none of any other.

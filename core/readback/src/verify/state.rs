@@ -7,12 +7,11 @@ use post_plugin::Lengths;
 
 use super::place::{ToolPlace, free, nearest_point};
 use super::report::BlockPlace;
-use post_motion::CornerMode;
 
 use super::Verifier;
 use super::track::Element;
 use crate::course::Course;
-use crate::{Coolants, Corners, Motion, ProgramEvent, SpindleState};
+use crate::{Coolants, Motion, ProgramEvent, SpindleState, smooths_beyond};
 
 /// Share of a printed speed or feed that is rounding.
 pub(super) const SHARE: f64 = 0.005;
@@ -178,22 +177,12 @@ impl<C: Course> Verifier<'_, C> {
     /// What the control may leave the path by is told where it is more than the tolerance and than the machine file's
     /// own: how far it does leave it follows from its accelerations.
     fn compare_smoothing(&mut self, motion: &Motion) {
-        let state = &motion.state;
-        let said = match state.corners {
-            Corners::Said(CornerMode::Blend { tolerance }) => tolerance,
-            _ => None,
-        };
-        let smoothing = state.smoothing.or(said).unwrap_or(0.0);
-        if smoothing == self.smoothing {
+        let off_path = motion.state.off_path();
+        if off_path == self.smoothing {
             return;
         }
-        self.smoothing = smoothing;
-        let most = self.machine.smoothing.largest().unwrap_or(0.0);
-        let most = most.max(self.rules.tolerance);
-        if smoothing > most + SHORT {
-            let message = format!(
-                "the control may leave the path by {smoothing} mm, and the tolerance is {most} mm"
-            );
+        self.smoothing = off_path;
+        if let Some(message) = smooths_beyond(off_path, self.machine, self.rules.tolerance) {
             self.left_on(motion.line, "smoothing", message);
         }
     }

@@ -105,3 +105,90 @@ fn the_tip_comes_to_its_first_point_where_a_slide_leans_and_the_control_keeps_it
     let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
     assert!(program.contains("G43.4 H1 X16.000 Y-30.000 Z"), "{program}");
 }
+
+/// One work offset holds before a length is called and behind it: X and Y ahead of G43 count from what those in its block do.
+/// The slide of the depth leans by a thousandth, a tool of 300 mm by 0.3 mm.
+#[test]
+fn words_ahead_of_the_length_count_from_the_offset_that_words_behind_it_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "extends = \"vmc\"\nname = \"leans\"\n[axis.Z]\nlinear = [0.001, 0, 1]\n[tools.1]\nlength = 300\n";
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/16,-30,50\nFEDRAT/500,MMPM\n\
+              GOTO/16,-30,40\nGOTO/16,-20,40\nRAPID\nGOTO/16,-20,60\nFINI\n";
+    fs::write(folder.path().join("mine.toml"), machine).unwrap();
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let run = post_in(folder.path(), &["-m", "mine.toml", "part.cls", "-o", "part.nc"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    assert!(program.contains("leans"), "{program}");
+    let verify = ["verify", "part.nc", "-m", "mine.toml", "--against", "part.cls"];
+    let run = post_in(folder.path(), &verify);
+    assert_eq!(run.code, 0, "{program}{}", run.err);
+    // And a word of X that is off is told, ahead of the length and behind it.
+    let off = program.replacen("Y-30.", "Y-30.3", 1);
+    assert_ne!(off, program);
+    fs::write(folder.path().join("part.nc"), off).unwrap();
+    let run = post_in(folder.path(), &verify);
+    assert!(
+        run.err.contains("error[deviation]") || run.err.contains("error[missing]"),
+        "{}",
+        run.err
+    );
+}
+
+/// A control works out a plane for slides that stand square and still: on a table that turns one, or where one leans, an
+/// operation whose tool axis stays is written by its own axes.
+#[test]
+fn no_plane_is_written_by_itself_where_a_table_turns_a_slide_or_one_leans() {
+    let cl = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/10,-30,60,0.3,0,0.953939201\nFEDRAT/500,MMPM\n\
+              GOTO/10,-30,40,0.3,0,0.953939201\nGOTO/10,20,40,0.3,0,0.953939201\nRAPID\nGOTO/10,20,80,0.3,0,0.953939201\nFINI\n";
+    for (chain, x, planes) in [
+        ("[w C' B' X' b Y Z (S) t]", "[1, 0, 0]", true),
+        ("[w X' C' B' b Y Z (S) t]", "[1, 0, 0]", false),
+        ("[w C' B' X' b Y Z (S) t]", "[1, 0.003, 0]", false),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let machine = format!(
+            "name = \"slides\"\nchain = \"{chain}\"\ntool.gauge = [0, 0, 400]\n\
+             control = {{ dialect = \"haas\", tcp = \"post\" }}\n[tools.1]\nlength = 100\n\
+             [axis.X]\nlinear = {x}\ntravel = [-2000, 2000]\n[axis.Y]\nlinear = [0, 1, 0]\ntravel = [-2000, 2000]\n\
+             [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-2000, 2000]\n\
+             [axis.B]\nrotary = [0, 1, 0]\ntravel = [-400, 400]\n[axis.C]\nrotary = [0, 0, 1]\ntravel = [-400, 400]\n"
+        );
+        fs::write(folder.path().join("mine.toml"), machine).unwrap();
+        fs::write(folder.path().join("part.cls"), cl).unwrap();
+        let words = ["-m", "mine.toml", "part.cls", "-o", "part.nc", "--verify"];
+        let run = post_in(folder.path(), &words);
+        assert_eq!(run.code, 0, "{chain} {x}: {}", run.err);
+        let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        assert_eq!(program.contains("G254"), planes, "{chain} {x}: {program}");
+        // Its feed in such a plane is another, too: who asks for one all the same is told.
+        let forced = [&words[..], &["--set", "control.planes=true"]].concat();
+        let run = post_in(folder.path(), &forced);
+        let turned = chain.contains("X' C'");
+        assert_eq!(run.err.contains("error[planes]"), turned, "{chain} {x}: {}", run.err);
+    }
+}
+
+/// Beside a pole the tip bows aside by more than it goes: a time of what it goes along would be faster than the CL file asks.
+#[test]
+fn beside_a_pole_no_feed_by_time_is_that_of_a_way_that_bows_aside_by_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "name = \"bows\"\nchain = \"[w C' B' Y' b X Z (S) t]\"\n\
+                   workpiece.mount = [-17.743, -11.578, 9.963]\ntool.gauge = [-1.309, -1.998, 344.229]\n\
+                   control = { dialect = \"haas\", tcp = \"post\" }\naccuracy.tolerance = 0.005\n\
+                   [axis.C]\nrotary = [0, 0, 1]\npoint = [-16.685974, 32.148456, -9.722254]\ntravel = [-400, 400]\nreversed = true\n\
+                   [axis.B]\nrotary = [0, 1, 0]\npoint = [-11.065595, 12.911432, 23.615994]\ntravel = [-400, 400]\nreversed = true\n\
+                   [axis.Y]\nlinear = [0, 1, 0]\ntravel = [-2000, 2000]\n\
+                   [axis.X]\nlinear = [1, 0, 0]\ntravel = [-2000, 2000]\n\
+                   [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-2000, 2000]\n[tools.2]\nlength = 76.955\n";
+    let cl = "UNITS/MM\nMULTAX/ON\nLOADTL/2\nSPINDL/RPM,5471,CLW\nRAPID\n\
+              GOTO/-38.974117,-34.194080,64.078092,-0.0221652732,-0.0794714351,0.9965906841\nFEDRAT/2894,MMPM\n\
+              GOTO/-38.531281,-32.606335,44.167391,-0.0221652732,-0.0794714351,0.9965906841\n\
+              GOTO/-28.177279,-28.557686,51.369505,-0.4005472217,-0.1985053530,0.8945152587\n\
+              GOTO/-23.446484,-40.538578,55.444988,0.0015360365,0.0021404903,0.9999965294\nRAPID\n\
+              GOTO/-23.408083,-40.485066,80.444901,0.0015360365,0.0021404903,0.9999965294\nFINI\n";
+    fs::write(folder.path().join("mine.toml"), machine).unwrap();
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let run = post_in(folder.path(), &["-m", "mine.toml", "part.cls", "-o", "part.nc", "--verify"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+}

@@ -205,6 +205,7 @@ impl<'a> Post<'a> {
             .or_else(|| refusal::no_instead(machine, dialect.capabilities()))
             .or_else(|| refusal::no_word_letter(machine, dialect.capabilities()))
             .or_else(|| refusal::no_signed_way(machine, dialect.capabilities()))
+            .or_else(|| refusal::plane_of_turned_slide(machine, dialect.capabilities()))
             .or_else(|| refusal::no_poses(machine, dialect.capabilities(), job.plans));
         if let Some(fault) = fault {
             return Err(fault.boxed());

@@ -1,6 +1,7 @@
 //! What is said of a point that cannot be reached and of a move that cannot be made.
 
 use crate::accuracy::{LineariseError, PlacementError};
+use crate::preview::wants_planes;
 use crate::program::{MoveFeed, StraightMove};
 use post_machine::axis_words;
 use post_machine::axis_words::AxisWords;
@@ -41,6 +42,16 @@ pub(crate) fn no_planes(machine: &Machine) -> Diagnostic {
         format!("[control] planes = true, and dialect `{dialect}` writes no tilted planes here: the rotary words are those of index axes"),
     )
     .help(format!("`post plugin show {dialect}` lists its options, which may switch them on"))
+}
+
+/// A control works out a tilted plane, and the feed in it, for slides that stand still.
+pub(crate) fn plane_of_turned_slide(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
+    let slide = machine.turned_slide().filter(|_| wants_planes(machine, writes))?;
+    let message = format!(
+        "[control] planes = true, and a rotary axis of {} turns {}: a tilted plane of the control is one for slides that stand still",
+        machine.name, slide.name
+    );
+    Some(Diagnostic::error("planes", message).help("[control] planes = false"))
 }
 
 /// Retracts go along linear axes. Without one nothing leads the tool off the part before a tool change and at the end,

@@ -53,6 +53,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
     options::SPACES,
     options::INVERSE_TIME,
     options::inverse_time_decimals(3),
+    options::most_inverse_time(999_999.999),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G54.1 Pn."),
     OptionSpec::lines(
         "cancel",

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from oracle.machine import Machine, turn
-from oracle.program import MEASURED, PLANES, Arc, Reader, Unread, arc_points
+from oracle.program import PLANES, Arc, Reader, Unread, arc_points
 
 SHARES = np.linspace(0, 1, 17)
 DWELLS = {
@@ -94,14 +94,6 @@ class Control(Reader):
                 yield from language(line, block.strip())
             except (KeyError, IndexError) as wrong:
                 raise Unread(f"{line}: {block}: {wrong!r}") from wrong
-
-    def counted_from(self) -> dict[str, float]:
-        """As of a reader; an offset that was measured with the tool has one zero across it, its length on or off."""
-        zero = super().counted_from()
-        if self.offset is None and self.leans < MEASURED:
-            measured = self.machine.work_zero(self.lengths.get(self.tool or 0, 0.0))
-            zero = {**zero, **{letter: measured[letter] for letter in "XYZ" if letter != self.along}}
-        return zero
 
     # Motion
 

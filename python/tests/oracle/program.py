@@ -89,16 +89,18 @@ class Reader:
         self.initial, self.height = False, 0.0
         self.along = "XYZ"[int(np.argmax(np.abs(machine.tool_axis)))]
         along = next(axis.direction for axis in machine.axes if axis.name == self.along)
-        self.leans = float(np.linalg.norm(along / (along @ machine.tool_axis) - machine.tool_axis))
+        self.leans = float(np.linalg.norm(along * np.sign(along @ machine.tool_axis) - machine.tool_axis))
 
     def counted_from(self) -> dict[str, float]:
-        """What the control shows where the words are zero: its length put on along one slide. Where the tool leans from
-        that by as little as is measured, the work offset was measured with this tool, as the warning of ``post`` asks."""
-        if self.offset is None:
-            return self.zero
-        if self.leans < MEASURED:
-            return {**self.zero, **self.machine.work_zero(self.offset)}
-        return {**self.zero, self.along: self.zero[self.along] + self.offset}
+        """What the control shows where the words are zero: its one work offset, and its length along one slide while that is
+        called. Where the tool leans from that slide by as little as is measured, the offset was measured with this tool, as
+        the warning of ``post`` asks; else with the gauge point."""
+        called = self.offset or 0.0
+        length = self.lengths.get(self.tool or 0, 0.0) if self.offset is None else self.offset
+        measured = length if self.leans < MEASURED else 0.0
+        zero = {**self.zero, **self.machine.work_zero(measured)}
+        # One unit of that slide's word is a mm along it, whichever way it points.
+        return {**zero, self.along: zero[self.along] + called - measured}
 
     def joints(self, at: dict[str, float]) -> np.ndarray:
         """Axis values of what the control shows: one row."""

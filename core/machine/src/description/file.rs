@@ -607,7 +607,7 @@ keys! {
         cycles: Cycles,
         /// An operation whose tool axis stays (3+2) is written in the control's own tilted plane, where the dialect has
         /// one; if not said where the control has cycles, arcs and cutter compensation in it, and the chain two rotary
-        /// axes, which point the tool, and X, Y and Z.
+        /// axes, which point the tool, and X, Y and Z, which stand square to one another and are not turned by them.
         planes: Option<bool>,
         /// What becomes of `INSERT text`; comment if not said.
         insert: Insert,

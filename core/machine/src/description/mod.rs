@@ -102,6 +102,9 @@ const FACE_MODE: &str = "mode face";
 /// Likewise in cylinder interpolation.
 const WRAP_MODE: &str = "mode wrap";
 
+/// The cosine between two linear axes that stand square to one another is less: a lean that was measured is more.
+const SQUARE: f64 = 1e-6;
+
 /// The linear axes whose words can be those of a tip.
 pub(crate) const TIP_WORDS: [&str; 3] = ["X", "Y", "Z"];
 
@@ -523,7 +526,8 @@ impl Machine {
     /// An operation whose tool axis stays (3+2) is to be written in a tilted plane of the control's: as the machine file
     /// says, else where nothing is lost in one (`whole`: the control has its cycles, arcs and cutter compensation there),
     /// both rotary axes point the tool, and the words of the plane are those of three linear axes. A control computes a
-    /// plane for the axes that it has been told of, not for an index table or a head besides.
+    /// plane for the axes that it has been told of, not for an index table or a head besides, and for slides that stand
+    /// still square to one another.
     pub fn wants_planes(&self, whole: bool) -> bool {
         self.control.planes.unwrap_or_else(|| {
             let rotary = self.axes.iter().filter(|axis| axis.joint.rotary).count();
@@ -533,7 +537,35 @@ impl Machine {
                 && linear_names(&self.axes) == BTreeSet::from(TIP_WORDS)
                 && self.heads.is_empty()
                 && self.errors.is_empty()
+                && self.slides_are_square()
+                && self.turned_slide().is_none()
         })
+    }
+
+    /// The linear axes stand square to one another.
+    fn slides_are_square(&self) -> bool {
+        let slides: Vec<&Axis> = self.axes.iter().filter(|axis| !axis.joint.rotary).collect();
+        let cosine = |one: &Axis, other: &Axis| one.joint.direction.dot(&other.joint.direction);
+        let mut pairs = slides.iter().enumerate().flat_map(|(place, one)| {
+            slides[place + 1..].iter().map(move |other| cosine(one, other))
+        });
+        pairs.all(|cosine| libm::fabs(cosine) < SQUARE)
+    }
+
+    /// X, Y or Z that a rotary axis turns, which is between it and the bed.
+    pub fn turned_slide(&self) -> Option<&Axis> {
+        let mut slides = self
+            .axes
+            .iter()
+            .enumerate()
+            .filter(|(_, axis)| !axis.joint.rotary && TIP_WORDS.contains(&axis.name.as_str()));
+        let turned = slides.find(|(place, slide)| {
+            self.axes.iter().enumerate().any(|(other, axis)| {
+                let nearer_bed = if slide.carries_part { other > *place } else { other < *place };
+                axis.joint.rotary && axis.carries_part == slide.carries_part && nearer_bed
+            })
+        });
+        turned.map(|(_, slide)| slide)
     }
 
     /// Minutes that each axis needs for one mm or radian at its largest feed; zero if it has none.

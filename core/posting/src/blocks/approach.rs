@@ -25,10 +25,11 @@ const STANDS: f64 = 1e-9;
 /// A way is tried so often, each time half as long, where a chain that is solved by steps has no place at its end.
 const TRIES: u32 = 8;
 
-/// Angles that differ by less are the same, radians; of directions, one less their cosine.
+/// Angles that differ by less are the same, radians.
 const SAME: f64 = 1e-9;
 
-/// A slide leans from the coordinate that its word has under tool centre point control, mm a mm.
+/// A slide leans from the coordinate that its word has under tool centre point control, or a tool from the slide of the depth,
+/// mm a mm: more than the last bits of directions. Measured leans are far larger, and none of them may come in ahead.
 const LEANS: f64 = 1e-9;
 
 /// The word of a plane along its normal.
@@ -126,11 +127,11 @@ impl BlockStage<'_> {
             return false;
         };
         let way = placer.solver().chain().way_of(depth, joints);
-        let word = axis_words::coordinate(&machine.axes[depth].name);
         if let Some(normal) = self.plane_normal() {
             // Along it, and not into the part, it is the plane's own Z: the others come first where that is its word.
             let along =
                 ToolAlignment::of(&normal, &way) == ToolAlignment::Along && way.dot(&normal) > 0.0;
+            let word = axis_words::coordinate(&machine.axes[depth].name);
             return word != DEPTH || !along;
         }
         if machine.control.tcp == Tcp::Post {
@@ -146,19 +147,19 @@ impl BlockStage<'_> {
             return true;
         }
         // A slide that leans takes the tip aside, which words of the tip do not.
-        let mut slides = machine.axes.iter().enumerate().filter(|(_, axis)| {
-            !axis.joint.rotary && matches!(axis.name.as_str(), "X" | "Y" | "Z")
+        let mut slides = machine.axes.iter().enumerate().filter(|(place, axis)| {
+            let named = matches!(axis.name.as_str(), "X" | "Y" | "Z");
+            !axis.joint.rotary && (named || *place == depth)
         });
         let leans = slides.any(|(place, axis)| {
             let mut aside = placer.solver().chain().way_of(place, joints);
             aside[axis_words::coordinate(&axis.name)] = 0.0;
             aside.norm() > LEANS
         });
-        if leans {
-            return true;
-        }
-        ToolAlignment::of(&node.target.axis, &way) != ToolAlignment::Along
-            || 1.0 - libm::fabs(way[word]) >= SAME
+        // And so does the length of a tool that leans.
+        leans
+            || ToolAlignment::of(&node.target.axis, &way) != ToolAlignment::Along
+            || node.trace.pose.axis.cross(&way).norm() > LEANS
     }
 
     /// Where the tool comes by to `node`, from the retract on: the place farthest out on its own line from which it goes

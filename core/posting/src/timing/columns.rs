@@ -52,6 +52,7 @@ impl TimingStage<'_> {
                 feed: Some(feed),
                 minutes: asked,
                 asked,
+                bow: run.tip_bound[lane],
                 turning: turns[lane],
                 curved: false,
             };

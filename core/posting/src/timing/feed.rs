@@ -58,10 +58,24 @@ pub(super) struct FedWay {
     /// The time that it leaves it, minutes, and that which it asks for.
     pub minutes: f64,
     pub asked: f64,
+    /// The tip bows aside from the straight way by no more, mm.
+    pub bow: f64,
     /// Some rotary axis turns.
     pub turning: bool,
     /// Along an arc or a spline.
     pub curved: bool,
+}
+
+impl FedWay {
+    /// The time in which the tip is no faster than asked, minutes: beside a pole it may go farther out and back than along, and
+    /// a time of what it goes along would be one that no control keeps.
+    fn bowed_minutes(&self) -> f64 {
+        let out_and_back = 2.0 * self.bow;
+        match self.feed {
+            Some(feed) if self.turning && self.tip < out_and_back => out_and_back / feed,
+            _ => 0.0,
+        }
+    }
 }
 
 impl FeedWriter {
@@ -143,6 +157,7 @@ impl FeedWriter {
             feed,
             minutes: feed.map_or(minutes, |feed| minutes.max(tip / feed)),
             asked: block.asked(),
+            bow: block.deviation.tip,
             turning: self.kinds.turning(from, &block.joints),
             curved: matches!(block.kind, BlockKind::Arc | BlockKind::Spline),
         };
@@ -164,7 +179,7 @@ impl FeedWriter {
             && (turning || self.tcp == Tcp::Control)
             && let Some(printed) = self.inverse
         {
-            return printed.inverse(1.0 / minutes);
+            return printed.inverse(1.0 / minutes.max(way.bowed_minutes()));
         }
         // No detour over the axes where their ways make no difference. Along a curve the tool goes its own way.
         let plain = match self.tcp {

@@ -55,7 +55,8 @@ impl ControlState {
         if self.tools.by_tool && self.tools.length_on {
             return self.length_changed();
         }
-        match self.is_whole() {
+        // What is not called counts too: the work offset was measured with the tool.
+        match self.is_whole() || !self.tools.length_on {
             true => self.length_changed(),
             false => Ok(()),
         }
@@ -153,8 +154,8 @@ impl ControlState {
             .or_else(|| find(&self.machine.tools, tool))
     }
 
-    /// Where the axes stand that axis positions count from, without the work offset: `exact` with the tip of the tool
-    /// on the part origin, but that the control has put the length along one axis, wherever the tool lies.
+    /// Where the axes stand that axis positions count from, without the work offset: `exact` where that is with the tip of
+    /// the tool on the part origin, as on a machine with nothing along which a length could be put.
     pub(super) fn counted_from(&self, exact: Joints) -> Joints {
         if self.lexicon.language() == Language::Joints {
             let mut shown = Joints::default();
@@ -165,35 +166,25 @@ impl ControlState {
         }
         let [.., z] = self.axes.cartesian;
         let place = match (self.machine.length_axis, self.lexicon.language()) {
-            (LengthAxis::None, _) => {
-                // Measured with the tool in the spindle, whether its length is called or not.
-                let length = self.length_of(self.state.tool);
-                let measured = length.and_then(|length| self.machine.zero_of(length));
-                return measured.unwrap_or(exact);
-            }
+            (LengthAxis::None, _) => None,
             (LengthAxis::Said(place), _) => Some(place),
-            (LengthAxis::Dialect, Language::Names | Language::Conversational) => {
-                self.axes.cartesian[self.tools.across.coordinates()[2]]
+            (LengthAxis::Dialect, language) => {
+                let named = matches!(language, Language::Names | Language::Conversational);
+                let third = self.axes.cartesian[self.tools.across.coordinates()[2]];
+                match if named { third } else { z } {
+                    Some(place) => Some(place),
+                    // Nothing moves along it.
+                    None => return exact,
+                }
             }
-            (LengthAxis::Dialect, _) => z,
         };
-        // Where nothing moves along it, or nothing is put on, there is nothing to shift.
-        let (Some(place), true) = (place, self.state.length != 0.0) else {
-            return exact;
+        let called = self.tools.length_on && place.is_some();
+        let known = || {
+            let tool = self.state.tool;
+            self.length_of(tool).or_else(|| find(&self.offsets.lengths, tool))
         };
-        let direction = |place: usize| self.machine.axes[place].joint.direction;
-        let beside = |along: usize, place: usize| {
-            along == place || direction(along).dot(&direction(place)) > 1.0 - 1e-6
-        };
-        // A tool that was measured leans a little, and so does what was measured with it.
-        if self.machine.lies_along().is_some_and(|(along, _)| beside(along, place)) {
-            return exact;
-        }
-        let Some(mut zero) = self.machine.zero_of(0.0) else {
-            return exact;
-        };
-        zero[place] += self.state.length;
-        zero
+        let length = if called { Some(self.state.length) } else { known() };
+        length.and_then(|length| self.machine.counted_from(length, called, place)).unwrap_or(exact)
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod codes;
 mod flag_words;
+mod isolation;
 mod job_lines;
 mod verbs;
 

@@ -45,8 +45,11 @@ pub(super) fn begins(head: &[u8]) -> bool {
         cell.starts_with(|first: char| first.is_alphabetic()) && !cell.contains(char::is_whitespace)
     };
     let names = cells.clone().all(|cell| cell.is_empty() || name(cell));
+    // No record of a CL file is a word and a value with nothing but a separator between them.
+    let setting = count == 2 && cells.clone().next().is_some_and(name);
     is_setting(cells.clone().next().unwrap_or_default())
-        || names && (count >= 3 || cells.clone().any(is_column))
+        || setting
+        || names && count >= 3
         || count >= 3 && cells.all(|cell| number_of(cell).is_some())
 }
 
@@ -96,8 +99,8 @@ impl CsvList {
         }
         let separator =
             self.table.as_ref().map_or_else(|| separator(text), |table| table.separator);
-        // What spreadsheets leave of rows that were deleted.
-        if text.split(separator).all(|cell| unquoted(cell).is_empty()) {
+        // Ahead of the header spreadsheets leave rows that were deleted; behind it such a row is a point that is missing.
+        if !self.has_header() && text.split(separator).all(|cell| unquoted(cell).is_empty()) {
             return Ok(());
         }
         self.take_cells(text, separator).map_err(|fault| {
@@ -117,9 +120,15 @@ impl CsvList {
         let first = names.clone().next().unwrap_or_default();
         // Spreadsheets fill a line up with separators.
         let told = names.clone().filter(|name| !name.is_empty()).count();
-        if told <= 2 && is_setting(first) {
+        let heads = names.clone().skip(1).any(is_column);
+        if told <= 2 && !heads && number_of(first).is_none() {
             let value = text.split(separator).nth(1).map_or(Cell::Empty, cell_of);
             return self.settings.take(first, &value);
+        }
+        if is_setting(first) && !heads {
+            let message = format!("`{first}` has {} values", told - 1);
+            let help = "a setting has one value: numbers without commas in them, names without a separator";
+            return Err(CellFault::at(0, message, help));
         }
         if number_of(first).is_some() {
             return Err(CellFault::whole(

@@ -99,7 +99,8 @@ impl JsonList {
         };
         let mut cursor = JsonCursor { text, at };
         cursor.blanks();
-        if cursor.taken(b']') {
+        // Behind a comma a point stands.
+        if !text[..at].ends_with(',') && cursor.taken(b']') {
             return Ok(self.close());
         }
         let value = cursor.value(0)?;
@@ -160,6 +161,9 @@ impl JsonList {
                     return wrong(key_span, "`points` stands here twice", "one list a file");
                 }
                 "points" => points = cursor.points()?,
+                "columns" if self.columns.is_some() => {
+                    return wrong(key_span, "`columns` stands here twice", "names once");
+                }
                 "columns" => {
                     let value = cursor.value(0)?;
                     self.columns = Some(columns(&value)?);
@@ -506,7 +510,7 @@ impl JsonCursor<'_> {
         }
     }
 
-    /// What stands up to the quotation mark that closes. An escape stays as it is written but for the mark itself.
+    /// What stands up to the quotation mark that closes, its escapes read.
     fn string(&mut self) -> Read<String> {
         let from = self.at;
         while let Some(byte) = self.peek() {
@@ -514,8 +518,12 @@ impl JsonCursor<'_> {
             match byte {
                 b'\\' => self.at += 1,
                 b'"' => {
-                    let inside = self.text.get(from..self.at - 1).unwrap_or_default();
-                    return Ok(inside.replace("\\\"", "\""));
+                    let whole = from - 1..self.at;
+                    let read = self.text.get(whole.clone()).map(serde_json::from_str);
+                    return match read {
+                        Some(Ok(text)) => Ok(text),
+                        _ => wrong(whole, "this is no text of JSON", "json.dump() writes it"),
+                    };
                 }
                 b'\n' => break,
                 _ => {}

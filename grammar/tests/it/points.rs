@@ -62,7 +62,7 @@ fn a_header_and_rows_are_a_cl_file() {
     );
     let list = "\u{FEFF}units,inch\ntool,3,,\nspindle,6000\ncoolant,flood\nname,blade\nfeed,8\nX,\"Y\",z,I,j,K,feed,rapid\n\
                 0,0,5,0,0,1,,\n# an arc it is not\n1,0,0,0.1,0,1,,0\n2,0,0,0,0,1,4,false\n3,0,0,0,0,1,8,\n\
-                ,,,,,,,\n3,0,9,0,0,1,4,TRUE\n\n";
+                \n3,0,9,0,0,1,4,TRUE\n\n";
     let records = [
         (7, "PARTNO blade"),
         (7, "UNITS/INCH"),
@@ -157,6 +157,9 @@ fn what_is_wrong_is_told_by_line_and_column() {
         ("units,feet\n", "1:7 `units` cannot be this `feet`"),
         ("units,mm\nunits,mm\n", "2:1 `units` stands here twice `units`"),
         ("tool,1.5\n", "1:6 `tool` cannot be this `1.5`"),
+        ("material,steel\n", "1:1 a list of points has no setting `material` `material`"),
+        ("tool,1\nspeed,6\n", "2:1 a list of points has no setting `speed` `speed`"),
+        ("spindle,6,000\n", "1:1 `spindle` has 2 values `spindle`"),
     ] {
         let all = both(list);
         assert_eq!(all.first().map(String::as_str), Some(told), "{all:?}");
@@ -168,6 +171,8 @@ fn what_is_wrong_is_told_by_line_and_column() {
         ("1,2,inf,0,0,1,", "2:5 `z` is no number `inf`"),
         ("1,2,1e999,0,0,1,", "2:5 `z` is no number `1e999`"),
         ("1,2,3 mm,0,0,1,", "2:5 `z` is no number `3 mm`"),
+        (",,,,,,", "2:1 a row without a position `,,,,,,`"),
+        (",,", "2:1 3 values in a row, and there are 7 columns `,,`"),
         ("1,2", "2:1 2 values in a row, and there are 7 columns `1,2`"),
         ("1,2,3,0,0,1,,", "2:1 8 values in a row, and there are 7 columns `1,2,3,0,0,1,,`"),
         ("1,,3,0,0,1,", "2:3 `y` is empty ``"),
@@ -202,6 +207,12 @@ fn what_is_wrong_is_told_by_line_and_column() {
             "[{\"arc\":{\"to\":[1,2,3],\"center\":[0,0,0]}}]",
             "1:2 the column `arc_i` is missing `{\"arc\":{\"to\":[1,2,3],\"center\":[0,0,0]}}`",
         ),
+        ("[[0,0,1],]", "1:10 a value is expected `]`"),
+        (
+            "{\"columns\":[\"x\",\"y\",\"z\"],\"columns\":[\"y\",\"x\",\"z\"],\"points\":[]}",
+            "1:26 `columns` stands here twice `\"columns\"`",
+        ),
+        ("{\"name\":\"\\x\",\"points\":[]}", "1:9 this is no text of JSON `\"\\x\"`"),
         ("[[1,2,[3]]]", "1:7 a list where a value is expected `[3]`"),
     ] {
         let all = both(list);

@@ -9,7 +9,8 @@ mod test;
 use clap::{Args, Subcommand};
 use post_host::Plugin;
 
-use super::isolation::OpensPlugins;
+use crate::isolation::OpensPlugins;
+
 use list::ListArguments;
 use new::NewPluginArguments;
 use post_job::failure::Failure;

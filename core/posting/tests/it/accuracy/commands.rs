@@ -199,7 +199,7 @@ fn axes_that_exclude_one_another_never_move_together() {
 }
 
 /// Pieces shorter than the words' decimals have no pace of their own: a move of 20 µm that turns by 6° takes the same
-/// time however many pieces it is cut into.
+/// time however many pieces it is cut into; in one piece that of its bow besides.
 #[test]
 fn pieces_of_a_short_move_are_paced_as_the_move_is() {
     let cl = "UNITS/MM\nLOAD/TOOL,1\nSPINDL/1000,CLW\nRAPID\nGOTO/0,0,50,0.3,0,0.9539392\nFEDRAT/250,MMPM\n\
@@ -221,7 +221,11 @@ fn pieces_of_a_short_move_are_paced_as_the_move_is() {
         let run = Bench::new(&format!("{machine}{config}\n"), 3, 100.0).run(cl).good(config);
         times.push(run.report.as_ref().map_or(0.0, |report| report.cutting_time_s));
     }
-    for time in &times {
-        assert!((time - times[0]).abs() < 0.05, "{times:?}");
+    let [whole, pieces @ ..] = &times[..] else { panic!("{times:?}") };
+    for time in pieces {
+        assert!((time - pieces[0]).abs() < 1e-3, "{times:?}");
     }
+    // In one piece the tip bows aside by 0.24 mm, and goes out and back at the feed: 0.48 mm at 250 mm/min.
+    let bow = whole - pieces[0];
+    assert!((0.09..0.12).contains(&bow), "{times:?}");
 }

@@ -655,3 +655,16 @@ fn a_plan_that_comes_to_rest_and_a_first_retract_are_right() {
         assert_eq!(run.code, 0, "{job:?}: {}", run.err);
     }
 }
+
+/// The cut that is made next is made at feed, though the rapid into it is taken back before.
+#[test]
+fn no_rapid_goes_along_a_cut_that_was_not_made() {
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/10,10,50\nRAPID\nGOTO/10,10,5\nFEDRAT/200,MMPM\n\
+              GOTO/10,10,-3\nGOTO/40,30,-3\nRAPID\nGOTO/40,30,50\nRAPID\nGOTO/-20,30,50\nRAPID\nGOTO/-20,30,5\n\
+              GOTO/-20,30,-3\nGOTO/-20,-30,-3\nRAPID\nGOTO/-20,-30,50\nFINI\n";
+    let posted = Posted::new(&cl.replace("30,5\nGOTO", "30,5\nFEDRAT/200,MMPM\nGOTO"), "fanuc");
+    posted.told(
+        ("X-20.000\nZ5.000\n", "X-20.000\nZ5.000\nG0 Z-2.9\nZ5.000\n"),
+        "error[rapid]: a rapid goes 7.9 mm along a cut that was not made yet",
+    );
+}

@@ -36,7 +36,7 @@ const HEAD: usize = 4096;
 const BYTE_ORDER_MARK: &[u8] = b"\xEF\xBB\xBF";
 
 /// The file separator of ASCII, at the end of a remark: the next line is the first of another file, whose form may be
-/// another.
+/// another. Twice where the file before had no end of its last line.
 pub const NEXT_FILE: u8 = 0x1C;
 
 /// How much of a record that is too long is shown.
@@ -143,7 +143,7 @@ impl<R: Read> ClReader<R> {
         while let Some(physical) = self.physical(0)? {
             let line = self.line;
             let mut raw = self.start..self.start + physical.end;
-            if self.buffer[raw.clone()].ends_with(&[NEXT_FILE]) {
+            while self.buffer[raw.clone()].ends_with(&[NEXT_FILE]) {
                 self.begun = false;
                 raw.end -= 1;
             }
@@ -209,13 +209,23 @@ impl<R: Read> ClReader<R> {
     /// Reads a list of points in one piece.
     #[cold]
     fn begin_json(&mut self) -> Result<(), ReadError> {
-        while !self.ended && self.end - self.start <= MOST_JSON {
+        let mut looked = 0;
+        let mark = loop {
+            let found = memchr::memchr(NEXT_FILE, &self.pending()[looked..]);
+            let read = self.pending().len();
+            if self.ended || found.is_some() || read > MOST_JSON {
+                break found.map(|at| looked + at);
+            }
+            looked = read;
             self.fill()?;
-        }
-        let mut bytes = std::mem::replace(&mut self.buffer, vec![0; CHUNK]);
-        bytes.truncate(self.end);
-        bytes.drain(..self.start);
-        (self.start, self.end) = (0, 0);
+        };
+        // Up to the line that says that another file begins.
+        let all = self.pending();
+        let end = mark.map_or(all.len(), |at| {
+            memchr::memrchr(b'\n', &all[..at]).map_or(0, |line_end| line_end + 1)
+        });
+        let bytes = all[..end].to_vec();
+        self.start += end;
         let wrong = match String::from_utf8(bytes) {
             Ok(text) if text.len() <= MOST_JSON => {
                 self.points = Some(PointList::Json { text, list: Box::default() });
@@ -273,10 +283,16 @@ impl<R: Read> ClReader<R> {
             let text = physical.as_ref().map(|physical| &self.pending()[..physical.end]);
             // Another file begins there.
             let over = text.is_none_or(|text| text.starts_with(b"$$"));
+            let cut = text.is_some_and(|text| text.ends_with(&[NEXT_FILE, NEXT_FILE]));
             let Some(PointList::Csv(list)) = &mut self.points else {
                 return Ok(false);
             };
             if over {
+                if cut && !list.ended() {
+                    list.end();
+                    let fault = cut_off_row(&decode(&self.row_text));
+                    return Err(SyntaxFault { line: self.row_line, ..fault }.into());
+                }
                 // The end is told on the last line: the next one may be another file's.
                 if list.end() {
                     self.points = None;
@@ -317,10 +333,7 @@ impl<R: Read> ClReader<R> {
             }
             if let Some(text) = text {
                 self.pass_the_rest();
-                let message = "the list ends within this line: what follows may be missing";
-                let fault = SyntaxFault::new(&text, text.len()..text.len(), message);
-                let fault = fault.help("end the last line as the others, with a line end");
-                return Err(SyntaxFault { line, ..fault }.into());
+                return Err(SyntaxFault { line, ..cut_off_row(&text) }.into());
             }
         }
     }
@@ -342,7 +355,9 @@ impl<R: Read> ClReader<R> {
                     let lines = text.as_bytes()[..list.end].iter().filter(|byte| **byte == b'\n');
                     self.line += lines.count() as u64;
                     // Another file may follow.
-                    self.buffer = text.as_bytes()[list.end..].to_vec();
+                    let mut rest = text.as_bytes()[list.end..].to_vec();
+                    rest.extend_from_slice(&self.buffer[self.start..self.end]);
+                    self.buffer = rest;
                     (self.start, self.end) = (0, self.buffer.len());
                     self.buffer.resize(self.end.max(CHUNK), 0);
                     self.points = None;
@@ -634,6 +649,13 @@ fn continued(text: &[u8]) -> Option<usize> {
     };
     let body = body.trim_ascii_end().strip_suffix(b"$")?;
     Some(body.trim_ascii_end().len())
+}
+
+/// A list whose last row has no line end.
+fn cut_off_row(text: &str) -> SyntaxFault {
+    let message = "the list ends within this line: what follows may be missing";
+    let fault = SyntaxFault::new(text, text.len()..text.len(), message);
+    fault.help("end the last line as the others, with a line end")
 }
 
 /// The text of a line. What is not UTF-8 is taken for Latin-1, which older CAM systems write:

@@ -147,6 +147,11 @@ impl CsvList {
         self.table.is_some()
     }
 
+    /// The end was told.
+    pub(crate) fn ended(&self) -> bool {
+        self.records.ended
+    }
+
     /// The list is over; true if that was told before.
     pub(crate) fn end(&mut self) -> bool {
         self.records.end()

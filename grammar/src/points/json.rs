@@ -12,7 +12,7 @@ pub(crate) const MOST_JSON: usize = 256 << 20;
 const MOST_VALUES: usize = 64;
 
 /// Deepest nesting.
-const DEEPEST: usize = 16;
+const DEEPEST: usize = 3;
 
 /// The columns of points that are lists of numbers, where the list does not name them.
 const PLAIN: [&str; 6] = ["x", "y", "z", "i", "j", "k"];
@@ -132,8 +132,7 @@ impl JsonList {
         };
         self.end = cursor.at;
         cursor.blanks();
-        // Behind a list of several files stands the name of the next.
-        if cursor.at < text.len() && !text[cursor.at..].starts_with("$$") {
+        if cursor.at < text.len() {
             let rest = cursor.at..text.len().min(cursor.at + 1);
             return wrong(rest, "something stands behind the list", "one list a file");
         }
@@ -246,10 +245,10 @@ impl JsonList {
         let Wrong { span, message, help } = fault;
         let start = span.start.min(text.len());
         let line = self.line(text, start);
-        let from = text[..start].rfind('\n').map_or(0, |end| end + 1);
-        let until = text[start..].find('\n').map_or(text.len(), |end| start + end);
-        let from = from.max(boundary(text, start.saturating_sub(SHOWN)));
-        let until = until.min(boundary(text, start.saturating_add(2 * SHOWN).min(text.len())));
+        let from = boundary(text, start.saturating_sub(SHOWN));
+        let until = boundary(text, start.saturating_add(2 * SHOWN).min(text.len()));
+        let from = text[from..start].rfind('\n').map_or(from, |end| from + end + 1);
+        let until = text[start..until].find('\n').map_or(until, |end| start + end);
         let shown = text[from..until].trim_end_matches('\r');
         let span = start - from..span.end.clamp(start, until) - from;
         let span = span.start.min(shown.len())..span.end.min(shown.len());

@@ -244,7 +244,7 @@ impl RowColumns {
             feed => Err(CellFault::at(
                 place,
                 format!("a feed of {feed}"),
-                "units a minute, above 0; an empty one is that of before",
+                "units a minute, above 0; an empty one is that of the settings, or of before",
             )),
         }
     }

@@ -250,6 +250,26 @@ fn a_hostile_list_is_refused() {
     }
 }
 
+/// What joins files adds the line end that the first has not, and says so.
+#[test]
+fn a_list_that_was_cut_off_is_told_ahead_of_another_file() {
+    let mark = char::from(NEXT_FILE);
+    let all = both(&format!("x,y,z\n4,5,6\n4,5,-1\n$$ b.cls{mark}{mark}\nGOTO/1,1,1\nFINI\n"));
+    assert!(
+        all.iter().any(|told| told.starts_with("3:7 the list ends within this line")),
+        "{all:?}"
+    );
+    assert!(all.iter().any(|told| told.contains("Goto { point: [1.0")), "{all:?}");
+    // A file behind a list in JSON may be written as it likes.
+    let mut bytes = format!("[[7,8,9],\n[7,8,10]]\n$$ d.cls{mark}\nPARTNO ").into_bytes();
+    bytes.extend(b"Geh\xE4use\nGOTO/1,1,1\nFINI\n");
+    for size in [1, 7, usize::MAX] {
+        let all = read(&bytes, size);
+        assert!(all.iter().any(|told| told.contains("Goto { point: [1.0")), "{all:?}");
+        assert!(!all.iter().any(|told| told.contains("UTF-8")), "{all:?}");
+    }
+}
+
 /// Files that are read one behind the other need not be of one form.
 #[test]
 fn lists_and_cl_files_follow_one_another() {

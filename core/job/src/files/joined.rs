@@ -166,6 +166,10 @@ impl JoinedFiles {
 fn remark(file: &FurtherFile) -> String {
     let name = Path::new(&file.name).file_name().unwrap_or_default();
     let name = as_remark(name.to_string_lossy().into_owned());
-    let end = if file.behind_line_end { "" } else { "\n" };
-    format!("{end}$$ {name}{}\n", char::from(NEXT_FILE))
+    let mark = char::from(NEXT_FILE);
+    match file.behind_line_end {
+        true => format!("$$ {name}{mark}\n"),
+        // Twice, as the file before may have been cut off within its last line.
+        false => format!("\n$$ {name}{mark}{mark}\n"),
+    }
 }

@@ -47,6 +47,7 @@ impl ControlState {
             self.report.changed = held;
         }
         self.state.tool = number;
+        self.state.length_of_spindle = false;
         self.tools.longer = 0.0;
         self.tools.ready_at = None;
         self.state.standstill.change = Some(self.line);

@@ -160,7 +160,7 @@ impl Detour {
             match end.turns(machine, slack) {
                 Some(_) if own && proven => None,
                 Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
-                _ if end.led => None,
+                _ if end.led && (own || end.leans_as(&asked, lean)) => None,
                 _ => {
                     let retracted = retract::lacks(machine, &end.from, slack[0]).is_none();
                     end.astray(
@@ -323,6 +323,10 @@ impl RapidEnd {
     }
 
     /// The tool stands on its own line through a place, at it or farther off.
+    fn leans_as(&self, asked: &[AskedPlace], lean: f64) -> bool {
+        asked.iter().any(|asked| (self.pose.axis - asked.pose.axis).norm() <= lean)
+    }
+
     fn on_the_line(&self, asked: &Pose, slack: f64, lean: f64) -> bool {
         let way = self.pose.tip - asked.tip;
         let along = way.dot(&asked.axis);

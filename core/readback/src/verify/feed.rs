@@ -136,9 +136,13 @@ impl<C: Course> Verifier<'_, C> {
         }
         let feed = way / motion.minutes;
         let rounded = self.rounded_share(motion, way);
-        // Where rotary axes turn the tip goes in a bow about the way that its time was counted by, within the tolerance.
+        // Where rotary axes turn the tip goes in a bow about the way that its time was counted by: out and back by the
+        // tolerance, and no more.
         let counted = match turns(motion) {
-            true => way.min((places[places.len() - 1].point - places[0].point).norm()),
+            true => {
+                let chord = (places[places.len() - 1].point - places[0].point).norm();
+                way.min(chord.max(way - 2.0 * self.rules.tolerance))
+            }
             false => way,
         };
         let [above, place] = self.places(motion);

@@ -63,7 +63,7 @@ struct HoleStray {
 }
 
 impl HoleStray {
-    /// The one that is farther off.
+    /// The one whose tip is farther off.
     fn larger(self, other: Self) -> Self {
         match other.depth > 0.0 && (self.depth <= 0.0 || other.off.point > self.off.point) {
             true => other,

@@ -355,7 +355,10 @@ impl<'m, C: Course> Verifier<'m, C> {
                 }
             }
             ProgramEvent::CycleEnd => self.cycle = None,
-            ProgramEvent::ToolChange { .. } => self.turned.clear(),
+            ProgramEvent::ToolChange { .. } => {
+                self.turned.clear();
+                self.cut_end = None;
+            }
             ProgramEvent::End => self.look_for_retract(line, "where the program ends"),
             ProgramEvent::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
                 if !std::mem::take(&mut self.moved)

@@ -1,5 +1,6 @@
 //! What a rapid promises: past the points of the course, along its ways, and no end where something is cut.
 
+use post_machine::diagnostic::Short;
 use post_machine::kinematics::Pose;
 use post_motion::path::nearest_share;
 
@@ -39,6 +40,7 @@ impl<C: Course> Verifier<'_, C> {
         if known && self.pecks_again(motion, places) {
             return;
         }
+        self.look_along_the_next_cut(motion, places);
         let asked = asked || self.may_begin(end);
         let leaves = self.leaves_along_itself(places);
         if known && !follows && !leaves {
@@ -230,7 +232,10 @@ impl<C: Course> Verifier<'_, C> {
         let bound = self.bound;
         let back = |end: &ToolPlace| {
             let stays = |place: &ToolPlace| place.within(end, &bound);
-            places.iter().all(|place| stays(place) || draws_back(&[*end, *place], &bound))
+            let rises =
+                |pair: &[ToolPlace]| (pair[1].point - pair[0].point).dot(&end.axis) >= -bound.point;
+            places.windows(2).all(rises)
+                && places.iter().all(|place| stays(place) || draws_back(&[*end, *place], &bound))
         };
         self.cut_end = self.cut_end.filter(back);
         self.cut_end.is_some()
@@ -242,6 +247,31 @@ impl<C: Course> Verifier<'_, C> {
         let due = due.and_then(|index| self.track.get(index));
         if due.is_some_and(|due| matches!(due.what, ElementKind::Reach(MotionKind::Rapid))) {
             self.pass(motion, &[place, place]);
+        }
+    }
+
+    /// A rapid must not go from the start of the next cut along its line: what stands there was not cut yet.
+    fn look_along_the_next_cut(&mut self, motion: &Motion, places: &[ToolPlace]) {
+        let [from, to] = [&places[0], &places[places.len() - 1]];
+        let slack = self.rapid_bound.point;
+        let due = self.next.and_then(|next| self.behind_events(next));
+        let due = due.and_then(|index| self.track.get(index)).filter(|due| due.is_cut());
+        let Some(due) = due else {
+            return;
+        };
+        let line = due.to.point - due.from.point;
+        if free(from, &due.from, &due.to, &self.bound).is_empty() || line.norm() <= slack {
+            return;
+        }
+        let line = line / line.norm();
+        let way = to.point - from.point;
+        let ahead = way.dot(&line);
+        let draws = draws_back(&[*from, *to], &self.bound);
+        if ahead > slack && (way - line * ahead).norm() <= slack && !draws {
+            let cl_line = due.line;
+            let message =
+                format!("a rapid goes {} mm along a cut that was not made yet", Short(ahead));
+            self.fault("rapid", message, Some(motion), Some(cl_line), None);
         }
     }
 

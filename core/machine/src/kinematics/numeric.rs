@@ -151,6 +151,8 @@ fn rank(mut columns: Vec<Rows>) -> usize {
     while let Some(longest) = columns
         .iter()
         .max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()))
+        // One that is no number, of a machine file whose faults are still looked for, is nothing either.
+        .filter(|longest| longest.norm() > NOTHING)
         .and_then(|longest| longest.try_normalize(NOTHING))
     {
         rank += 1;

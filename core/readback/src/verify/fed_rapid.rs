@@ -9,11 +9,8 @@ use crate::{Motion, MotionKind, fed_rapids};
 impl<C: Course> Verifier<'_, C> {
     /// A first point that the program comes to at feed. False if the motion is no such.
     pub(super) fn reaches_at_feed(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
-        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
-            return false;
-        };
         let bound = self.bound;
-        let due = self.track.get(index).and_then(|element| {
+        let due = self.due().and_then(|element| {
             let reached = places[places.len() - 1].within(&element.to, &bound);
             match element.what {
                 ElementKind::Reach(kind) if reached => Some((kind, element.line)),

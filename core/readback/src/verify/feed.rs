@@ -47,12 +47,12 @@ impl<C: Course> Verifier<'_, C> {
             return false;
         }
         let feed = way_of(places) / motion.minutes;
-        let [above, below] = self.places(motion);
+        let [above, below] = self.last_places(motion);
         feed <= asked * (1.0 + SHARE) + above && feed >= asked * (1.0 - SHARE) - below
     }
 
     /// What the last place of a feed makes upwards and downwards, mm/min: that of a time is a share of it.
-    fn places(&self, motion: &Motion) -> [f64; 2] {
+    fn last_places(&self, motion: &Motion) -> [f64; 2] {
         match motion.by_time {
             true => [0.0; 2],
             false => [PLACE, self.rules.feed_place.max(PLACE)],
@@ -141,11 +141,11 @@ impl<C: Course> Verifier<'_, C> {
         let counted = match turns(motion) {
             true => {
                 let chord = (places[places.len() - 1].point - places[0].point).norm();
-                way.min(chord.max(way - 2.0 * self.rules.tolerance))
+                chord.max(way - 2.0 * self.rules.tolerance)
             }
             false => way,
         };
-        let [above, place] = self.places(motion);
+        let [above, place] = self.last_places(motion);
         if counted / motion.minutes > asked * (1.0 + SHARE + rounded) + above {
             return FeedVerdict::Above(feed);
         }

@@ -69,8 +69,7 @@ impl<C: Course> Verifier<'_, C> {
     /// ends, and at points of the course in the midst of the motion, mm.
     fn course_is_near(&mut self) -> f64 {
         let mut under_way = None;
-        if let Some(index) = self.next.and_then(|next| self.behind_events(next))
-            && let Some(element) = self.track.get(index)
+        if let Some(element) = self.due()
             && matches!(element.what, ElementKind::Way)
         {
             under_way = Some((element.from.point, element.to.point));

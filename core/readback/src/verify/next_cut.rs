@@ -4,7 +4,7 @@ use super::detour::Detour;
 use super::place::{PlaceDistance, ShareSpan, ToolPlace, free};
 use super::report::{BlockPlace, lines_of};
 use super::sweep::StrayStretch;
-use super::track::{ElementKind, MOST};
+use super::track::{Element, ElementKind, MOST};
 use super::{RAPID_TURN, Verifier, state};
 use crate::course::Course;
 use crate::{Motion, ProgramEvent};
@@ -50,6 +50,12 @@ impl<C: Course> Verifier<'_, C> {
         Some(index)
     }
 
+    /// The element that is due next, events apart.
+    pub(super) fn due(&mut self) -> Option<&Element> {
+        let index = self.behind_events(self.next?)?;
+        self.track.get(index).map(|element| &*element)
+    }
+
     /// The next thing due is a hole.
     pub(super) fn hole_is_due(&mut self) -> bool {
         let Some(next) = self.next else {
@@ -71,9 +77,7 @@ impl<C: Course> Verifier<'_, C> {
     /// A cut that was left goes on here, or the next one begins; or a rapid is due that passes here.
     pub(super) fn may_begin(&mut self, place: &ToolPlace) -> bool {
         let rapid = self.rapid_bound;
-        let due = self.next.and_then(|next| self.behind_events(next));
-        let due = due.and_then(|index| self.track.get(index));
-        let passes = due.is_some_and(|element| {
+        let passes = self.due().is_some_and(|element| {
             matches!(element.what, ElementKind::Way | ElementKind::Reach(_))
                 && !free(place, &element.from, &element.to, &rapid).is_empty()
         });
@@ -90,10 +94,7 @@ impl<C: Course> Verifier<'_, C> {
         if goes_on.any(|span| !span.is_empty()) {
             return true;
         }
-        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
-            return false;
-        };
-        self.track.get(index).is_some_and(|element| {
+        self.due().is_some_and(|element| {
             !matches!(element.what, ElementKind::Way | ElementKind::Reach(_))
                 && place.within(&element.from, &bound)
         })

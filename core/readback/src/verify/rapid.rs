@@ -56,12 +56,9 @@ impl<C: Course> Verifier<'_, C> {
 
     /// Whether a rapid goes from one place of a rapid of the course to another as that does, and on.
     fn keeps_to_the_way(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
-        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
-            return false;
-        };
         let mut bound = self.rapid_bound;
         bound.axis = 2.0;
-        let Some(element) = self.track.get(index) else {
+        let Some(element) = self.due() else {
             return false;
         };
         if !matches!(element.what, ElementKind::Way) {
@@ -97,10 +94,7 @@ impl<C: Course> Verifier<'_, C> {
     /// lower than the CL file does: up first, then across.
     fn look_how_low(&mut self, motion: &Motion, places: &[ToolPlace]) {
         let slack = self.rapid_bound.point;
-        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
-            return;
-        };
-        let Some(due) = self.track.get(index) else {
+        let Some(due) = self.due() else {
             return;
         };
         let ElementKind::Hole(hole) = &due.what else {
@@ -139,10 +133,7 @@ impl<C: Course> Verifier<'_, C> {
     fn is_on_the_way_to_a_hole(&mut self, place: &ToolPlace) -> bool {
         let mut bound = self.rapid_bound;
         bound.axis = 2.0;
-        let Some(index) = self.next.and_then(|next| self.behind_events(next)) else {
-            return false;
-        };
-        self.track.get(index).is_some_and(|due| match &due.what {
+        self.due().is_some_and(|due| match &due.what {
             ElementKind::Hole(hole) => {
                 let mut ways = hole.approach.iter();
                 ways.any(|[from, to]| !free(place, from, to, &bound).is_empty())
@@ -243,9 +234,7 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A first point of the course is where the tool stands already: nothing has moved since its length was called.
     pub(super) fn stands_at_a_first_point(&mut self, motion: &Motion, place: ToolPlace) {
-        let due = self.next.and_then(|next| self.behind_events(next));
-        let due = due.and_then(|index| self.track.get(index));
-        if due.is_some_and(|due| matches!(due.what, ElementKind::Reach(MotionKind::Rapid))) {
+        if self.due().is_some_and(|due| matches!(due.what, ElementKind::Reach(MotionKind::Rapid))) {
             self.pass(motion, &[place, place]);
         }
     }
@@ -253,22 +242,19 @@ impl<C: Course> Verifier<'_, C> {
     /// A rapid must not go from the start of the next cut along its line: what stands there was not cut yet.
     fn look_along_the_next_cut(&mut self, motion: &Motion, places: &[ToolPlace]) {
         let [from, to] = [&places[0], &places[places.len() - 1]];
-        let slack = self.rapid_bound.point;
-        let due = self.next.and_then(|next| self.behind_events(next));
-        let due = due.and_then(|index| self.track.get(index)).filter(|due| due.is_cut());
-        let Some(due) = due else {
+        let (slack, bound) = (self.rapid_bound.point, self.bound);
+        let Some(due) = self.due().filter(|due| due.is_cut()) else {
             return;
         };
-        let line = due.to.point - due.from.point;
-        if free(from, &due.from, &due.to, &self.bound).is_empty() || line.norm() <= slack {
+        let (cl_line, line) = (due.line, due.to.point - due.from.point);
+        if free(from, &due.from, &due.to, &bound).is_empty() || line.norm() <= slack {
             return;
         }
         let line = line / line.norm();
         let way = to.point - from.point;
         let ahead = way.dot(&line);
-        let draws = draws_back(&[*from, *to], &self.bound);
+        let draws = draws_back(&[*from, *to], &bound);
         if ahead > slack && (way - line * ahead).norm() <= slack && !draws {
-            let cl_line = due.line;
             let message =
                 format!("a rapid goes {} mm along a cut that was not made yet", Short(ahead));
             self.fault("rapid", message, Some(motion), Some(cl_line), None);

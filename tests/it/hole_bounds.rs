@@ -167,3 +167,23 @@ fn holes_end_where_the_certificate_says() {
         }
     }
 }
+
+/// Eleven pecks of 0.08155 inch are 0.00005 less than the depth: the bottom is reached by them, and the twelfth is of no
+/// hole but this, however near the next one stands.
+#[test]
+fn a_last_peck_of_less_than_the_tolerance_is_of_its_own_hole() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let cl = "UNITS/INCHES\nLOADTL/1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,2.4\n\
+        CYCLE/DEEP,0.897076,IPM,8.9,0.1075,STEP,0.08155\nGOTO/0.2394,0.9404,0.6364\nGOTO/-0.0014,0.5893,0.6837\n\
+        CYCLE/OFF\nRAPID\nGOTO/0,0,2.4\nFINI\n";
+    fs::write(folder.join("p.cls"), cl).unwrap();
+    let mut made = command();
+    made.current_dir(folder).args(["-q", "--verify", "p.cls", "-o", "p.nc", "-m", "vmc"]);
+    made.args(["--dialect", "heidenhain", "--tool-length", "100", "--mount", "0,0,60"]);
+    made.args(["--set", "control.units=\"inch\""]);
+    let made = run(&mut made, b"");
+    assert_eq!(made.code, 0, "{}", made.err);
+    let program = fs::read_to_string(folder.join("p.nc")).unwrap();
+    assert!(program.contains("Q202=+0.08155"), "{program}");
+}

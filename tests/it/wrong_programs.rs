@@ -368,24 +368,57 @@ fn a_wrong_feed_by_time_is_no_rounded_one() {
     assert_eq!(run.code, 0, "{}", run.err);
     let text = fs::read_to_string(&nc).unwrap();
     for factor in [0.1, 0.5, 1.5, 1.9] {
-        let mut by_time = false;
-        let changed: String = text
-            .lines()
-            .map(|line| {
-                by_time = (by_time || line.contains("G93")) && !line.contains("G94");
-                match line.rsplit_once('F').filter(|_| by_time) {
-                    Some((words, feed)) => {
-                        let feed: f64 = feed.parse().unwrap();
-                        format!("{words}F{:.3}\n", factor * feed)
-                    }
-                    None => format!("{line}\n"),
-                }
-            })
-            .collect();
+        let changed = with_times(&text, factor);
         assert_ne!(changed, text);
         fs::write(&nc, &changed).unwrap();
         let run = post(&[&["verify", "-q", &nc, "--against", &cl][..], &job].concat());
         assert!(run.code == 1 && run.err.contains("error[feed]"), "{factor}: {}", run.err);
+    }
+}
+
+/// The blocks of a program whose feeds are times, as many times as fast.
+fn with_times(text: &str, factor: f64) -> String {
+    let mut by_time = false;
+    text.lines()
+        .map(|line| {
+            by_time = (by_time || line.contains("G93")) && !line.contains("G94");
+            match line.rsplit_once('F').filter(|_| by_time) {
+                Some((words, feed)) => {
+                    let feed: f64 = feed.parse().unwrap();
+                    format!("{words}F{:.3}\n", factor * feed)
+                }
+                None => format!("{line}\n"),
+            }
+        })
+        .collect()
+}
+
+/// Rounded words make up to a seventh of the way of a block of 0.02 mm, and nothing of that of a thousand.
+#[test]
+fn feeds_of_short_blocks_are_compared_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [cl, nc] = ["part.cls", "part.nc"].map(path);
+    let mut text = "LOADTL/1\nSPINDL/4000\nRAPID\nGOTO/20,0,50,0,0,1\nFEDRAT/80,MMPM\n".to_owned();
+    for point in 0..3000 {
+        let turn = 0.001 * f64::from(point);
+        let lean = 0.35 + 0.05 * (0.7 * turn).sin();
+        let axis = [lean.sin() * turn.cos(), lean.sin() * turn.sin(), lean.cos()];
+        let tip = [20.0 * turn.cos(), 20.0 * turn.sin(), 0.3 * turn];
+        let words = tip.iter().chain(&axis).map(|value| format!("{value:.7}"));
+        text.push_str(&format!("GOTO/{}\n", words.collect::<Vec<_>>().join(",")));
+    }
+    fs::write(&cl, text + "FINI\n").unwrap();
+    let job = ["-m", "ac-trunnion", "--tool-length", "100", "--set", "control.tcp=post"];
+    let run = post(&[&["-q", "--verify", "-o", &nc, &cl][..], &job].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let text = fs::read_to_string(&nc).unwrap();
+    for factor in [1.0, 0.8, 0.95, 1.05, 1.3] {
+        let changed = with_times(&text, factor);
+        fs::write(&nc, &changed).unwrap();
+        let run = post(&[&["verify", "-q", &nc, "--against", &cl][..], &job].concat());
+        let told = run.err.contains("taken together");
+        assert_eq!(told, factor != 1.0, "{factor}: {}", run.err);
     }
 }
 

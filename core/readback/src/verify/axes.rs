@@ -159,7 +159,10 @@ impl AxisLimitCheck {
         }
         for (joint, axis) in machine.axes.iter().enumerate() {
             let slack = ROUNDED * axis.unit();
-            for value in [least[joint], most[joint]] {
+            let ends = [least[joint], most[joint]];
+            // Of most motions both are the end.
+            let count = if ends[0] == ends[1] { 1 } else { 2 };
+            for value in ends.into_iter().take(count) {
                 if let Some(limit) = passed(axis.travel, value, slack) {
                     let by = libm::fabs(value - limit) / axis.unit();
                     let message = beyond_travel(axis, value, limit);

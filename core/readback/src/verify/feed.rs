@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::Verifier;
+use super::feed_sum::FeedTime;
 use super::place::{ToolPlace, free, way_of};
 use super::state::{PLACE, SHARE, SHORT};
 use super::track::Element;
@@ -13,7 +14,7 @@ use crate::{Interpolation, Motion, MotionKind};
 const MOST_ROUNDED: f64 = 0.9;
 
 /// Rounding of the ends of a way, mm.
-const ROUNDED: f64 = 0.003;
+pub(super) const ROUNDED: f64 = 0.003;
 
 impl<C: Course> Verifier<'_, C> {
     /// Whether the feed is as asked, mm/min, if one is, or something limits it, which is noted then.
@@ -31,7 +32,10 @@ impl<C: Course> Verifier<'_, C> {
             return false;
         }
         match self.feed_verdict(motion, places, asked) {
-            FeedVerdict::AsAsked => true,
+            FeedVerdict::AsAsked => {
+                self.sum_feed(motion, places, asked, None);
+                true
+            }
             FeedVerdict::Limited(limit) => {
                 self.note_limit(limit);
                 true
@@ -88,7 +92,7 @@ impl<C: Course> Verifier<'_, C> {
             return;
         };
         match self.feed_verdict(motion, places, asked) {
-            FeedVerdict::AsAsked => {}
+            FeedVerdict::AsAsked => self.sum_feed(motion, places, asked, Some(element.line)),
             FeedVerdict::Limited(limit) => self.note_limit(limit),
             FeedVerdict::None => {
                 let message = "cuts without a feed".to_owned();
@@ -136,15 +140,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         let feed = way / motion.minutes;
         let rounded = self.rounded_share(motion, way);
-        // Where rotary axes turn the tip goes in a bow about the way that its time was counted by: out and back by the
-        // tolerance, and no more.
-        let counted = match turns(motion) {
-            true => {
-                let chord = (places[places.len() - 1].point - places[0].point).norm();
-                chord.max(way - 2.0 * self.rules.tolerance)
-            }
-            false => way,
-        };
+        let counted = self.least_way(motion, places, way);
         let [above, place] = self.last_places(motion);
         if counted / motion.minutes > asked * (1.0 + SHARE + rounded) + above {
             return FeedVerdict::Above(feed);
@@ -152,6 +148,12 @@ impl<C: Course> Verifier<'_, C> {
         if feed >= asked * (1.0 - SHARE - rounded) - place {
             return FeedVerdict::AsAsked;
         }
+        self.slower_for(motion, way).map_or(FeedVerdict::Below(feed), FeedVerdict::Limited)
+    }
+
+    /// What lets a motion that goes `way` mm be slower than asked, if anything does.
+    fn slower_for(&self, motion: &Motion, way: f64) -> Option<FeedLimit> {
+        let [_, place] = self.last_places(motion);
         // An axis is as fast as it may be where the motion is fastest.
         let quick = motion.minutes_at_fastest;
         match self.axes.least_minutes(self.machine, motion, 0.0) {
@@ -159,14 +161,64 @@ impl<C: Course> Verifier<'_, C> {
             Some((minutes, joint))
                 if quick <= minutes * 1.05 || way / quick + 2.0 * place >= 0.95 * way / minutes =>
             {
-                FeedVerdict::Limited(FeedLimit::Axis(joint))
+                Some(FeedLimit::Axis(joint))
             }
             _ if motion.minutes <= self.rules.least_minutes * (1.0 + SHARE) => {
-                FeedVerdict::Limited(FeedLimit::Time)
+                Some(FeedLimit::Time)
             }
-            _ if self.rules.planned => FeedVerdict::Limited(FeedLimit::Plan),
-            _ => FeedVerdict::Below(feed),
+            _ => self.rules.planned.then_some(FeedLimit::Plan),
         }
+    }
+
+    /// The shortest way by which the time of a motion that goes `way` mm may have been counted, mm: where rotary axes turn
+    /// the tip goes in a bow about it, out and back by the tolerance, and no more.
+    fn least_way(&self, motion: &Motion, places: &[ToolPlace], way: f64) -> f64 {
+        match turns(motion) {
+            true => {
+                let chord = (places[places.len() - 1].point - places[0].point).norm();
+                chord.max(way - 2.0 * self.rules.tolerance)
+            }
+            false => way,
+        }
+    }
+
+    /// Counts a motion among those of its cut that rounded words alone let pass, if it is one: its time by itself proves
+    /// nothing.
+    fn sum_feed(
+        &mut self,
+        motion: &Motion,
+        places: &[ToolPlace],
+        asked: f64,
+        cl_line: Option<u64>,
+    ) {
+        let way = way_of(places);
+        if way < SHORT || motion.minutes <= 0.0 || self.is_as_fast_as_asked(motion, places, asked) {
+            return;
+        }
+        if way / motion.minutes < asked && self.slower_for(motion, way).is_some() {
+            return;
+        }
+        let [above, below] = self.printed_shares(motion);
+        let time = FeedTime {
+            taken: motion.minutes,
+            asked: [self.least_way(motion, places, way) / asked, way / asked],
+            printed: [above * motion.minutes, below * motion.minutes],
+            way,
+            per_mm: 1.0 / asked,
+        };
+        self.sum_feeds(motion, &time, cl_line);
+    }
+
+    /// Share of the time of a motion that the last place of its printed feed makes, upwards and downwards.
+    fn printed_shares(&self, motion: &Motion) -> [f64; 2] {
+        if motion.by_time {
+            return [(self.rules.time_place * motion.minutes).min(MOST_ROUNDED); 2];
+        }
+        let along = match motion.way {
+            Interpolation::Axes => printed_way(motion).max(1e-6),
+            _ => motion.feed * motion.minutes,
+        };
+        self.last_places(motion).map(|place| (place * motion.minutes / along).min(MOST_ROUNDED))
     }
 
     /// Share of the feed of a motion that goes `way` mm which rounded words make.

@@ -197,6 +197,10 @@ impl<C: Course> Verifier<'_, C> {
         if to <= from || !near || !faces {
             return false;
         }
+        // A last peck of less than the tolerance, in the hole before: the bottom of that was reached without it.
+        if off.point > bound.point && self.goes_into_made(motion, places) {
+            return false;
+        }
         let mut shift = Vector3::zeros();
         if off.point > bound.point {
             let offset = places[0].point - axis.top.point;
@@ -376,15 +380,14 @@ impl<C: Course> Verifier<'_, C> {
         }
     }
 
-    /// A further peck in the hole that was made last: one before may have come to the bottom within the tolerance.
-    /// False if the motion is no peck.
-    pub(super) fn pecks_again(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
+    /// Whether a motion goes into the hole that was made last, and no deeper than that may be.
+    fn goes_into_made(&self, motion: &Motion, places: &[ToolPlace]) -> bool {
         let Some(made) = self.made else {
             return false;
         };
-        let (axis, deepest, bound) = (made.axis, made.deepest, self.bound);
+        let (axis, bound) = (made.axis, self.bound);
         let most = match motion.kind {
-            MotionKind::Rapid => deepest,
+            MotionKind::Rapid => made.deepest,
             _ => axis.depth,
         };
         let in_it = places.iter().all(|place| {
@@ -392,13 +395,18 @@ impl<C: Course> Verifier<'_, C> {
             off.point <= bound.point && off.axis <= bound.axis && depth <= most + bound.point
         });
         // Out of it other points may be due.
-        let goes = axis.split(&places[places.len() - 1]).0 > bound.point;
+        in_it && axis.split(&places[places.len() - 1]).0 > bound.point
+    }
+
+    /// A further peck in the hole that was made last: one before may have come to the bottom within the tolerance.
+    /// False if the motion is no peck.
+    pub(super) fn pecks_again(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
+        let Some(made) = self.made.filter(|_| self.goes_into_made(motion, places)) else {
+            return false;
+        };
         let has = motion.state.spindle;
-        if in_it
-            && goes
-            && motion.kind != MotionKind::Rapid
-            && !state::same_spindle(has, made.spindle)
-        {
+        let cuts = motion.kind != MotionKind::Rapid;
+        if cuts && !state::same_spindle(has, made.spindle) {
             let message = format!(
                 "the spindle {} in a hole that was made, and as it was made it {}",
                 state::spindle_name(has),
@@ -406,26 +414,15 @@ impl<C: Course> Verifier<'_, C> {
             );
             self.fault("spindle", message, Some(motion), None, None);
         }
-        if in_it
-            && goes
-            && motion.kind != MotionKind::Rapid
-            && made.again
-            && made.cycle
-            && motion.hole
-        {
+        if cuts && made.again && made.cycle && motion.hole {
             let message = "a hole is made once more, and the CL file asks for it once".to_owned();
             self.fault("hole", message, Some(motion), None, None);
             if let Some(made) = &mut self.made {
                 made.again = false;
             }
         }
-        if in_it && goes {
-            self.set_kind(match motion.kind {
-                MotionKind::Rapid => "rapid",
-                _ => "hole",
-            });
-        }
-        in_it && goes
+        self.set_kind(if cuts { "hole" } else { "rapid" });
+        true
     }
 
     /// The next hole that is due has another axis than the one that was made last, of the same face of the part: the course

@@ -20,6 +20,7 @@ mod cut_path;
 mod detour;
 mod fed_rapid;
 mod feed;
+mod feed_sum;
 mod hole;
 mod left_on;
 mod limits;
@@ -243,6 +244,8 @@ pub struct Verifier<'m, C> {
     /// Where the axes stand; none: nothing has moved.
     stands: Option<Joints>,
     axes: AxisLimitCheck,
+    /// Times of short blocks since the cut began.
+    feeds: feed_sum::FeedSum,
     limits: LimitCheck,
     block: BlockReport,
     found: Verification,
@@ -299,6 +302,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             told: 0,
             stands: None,
             axes: AxisLimitCheck::new(machine),
+            feeds: feed_sum::FeedSum::default(),
             limits: LimitCheck::default(),
             block: BlockReport::default(),
             found: Verification::default(),

@@ -1,6 +1,7 @@
 //! What happens between cuts: where one is left, what is due before the next, and where that begins.
 
 use super::detour::Detour;
+use super::feed_sum::FeedSum;
 use super::place::{PlaceDistance, ShareSpan, ToolPlace, free};
 use super::report::{BlockPlace, lines_of};
 use super::sweep::StrayStretch;
@@ -141,6 +142,7 @@ impl<C: Course> Verifier<'_, C> {
         self.next = None;
         self.apart = false;
         self.made = None;
+        self.feeds = FeedSum::default();
         if let Some(first) = self.reach.iter().position(|span| !span.is_empty()) {
             self.miss_events(Some(BlockPlace::of(motion)), first);
         }

@@ -67,9 +67,6 @@ KNOWN: dict[str, Callable[[Job, str, str], bool]] = {
         and any(word in text for word in PLANES)
         and bool(set(REASONS.findall(said)) & {"nc-plane", "feed", "register"})
     ),
-    "the tool at GRBL's stop": lambda job, said, text: (
-        job.dialect == "grbl" and any(one.tool == 2 for one in job.operations) and "rror[" in said
-    ),
     "a rapid beside an earlier cut": lambda job, said, text: (
         set(REASONS.findall(said)) == {"rapid"} and "of what is cut" in said
     ),

@@ -417,3 +417,25 @@ fn a_spindle_that_waits_turns_before_the_tool_goes_in() {
     let again = text.rfind("S15000 M3").expect(&text);
     assert!(again < text.find("M98 P7000").expect(&text), "{text}");
 }
+
+/// Where the work offset has the length in it, it is measured after each change of the tool: words count with that which is
+/// in the spindle, on a head too, where they hang on how long it is.
+#[test]
+fn a_length_in_the_work_offset_is_that_of_the_tool_in_the_spindle() {
+    let machine = "extends = \"head-head\"\n[tools.1]\nlength = 174.8\n[tools.2]\nlength = 127.419\n\
+         [control]\ndialect = \"grbl\"\ntcp = \"post\"\nretract = { Z = 250 }\n[control.grbl]\nhal = true\n";
+    let operation = |tool: u32| {
+        format!(
+            "LOADTL/{tool}\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/10,0,60,0.3,0,0.9539392\nFEDRAT/300,MMPM\nGOTO/0,0,20\n\
+             GOTO/10,5,20,0,0,1\nRAPID\nGOTO/10,5,80\n"
+        )
+    };
+    let job = |tools: &[u32]| {
+        let operations: String = tools.iter().map(|tool| operation(*tool)).collect();
+        format!("UNITS/MM\nMULTAX/ON\n{operations}FINI\n")
+    };
+    let words = |tools: &[u32]| good(machine, &job(tools), &[]).1;
+    let [one, two] = [&[1][..], &[2]].map(words);
+    assert_ne!(one.replace("T1", "T"), two.replace("T2", "T"));
+    words(&[2, 1]);
+}

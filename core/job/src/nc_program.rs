@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use post_host::Finder;
 use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
-use post_plugin::{Capabilities, DialectSession as _, Language, Lengths, VocabularyWord};
+use post_plugin::{Capabilities, DialectSession as _, Language, VocabularyWord};
 use post_readback::interpret::{Interpreter, Limits, ReadReport};
 use post_readback::lexicon::Lexicon;
 use post_readback::{FedRapids, MOST_FAULTS, Offsets, ProgramRun, turns_the_spindle};
@@ -39,8 +39,6 @@ const MOST_OFFSETS: u64 = 1 << 20;
 pub struct NcControl {
     /// The machine, as its file says.
     pub machine: Machine,
-    /// The machine as the control's programs count: where lengths are in the work offset, from the tip of the tool.
-    pub counted: Machine,
     /// What its dialect tells of them.
     pub spoken: DialectVocabulary,
     /// Its words.
@@ -60,19 +58,9 @@ impl NcControl {
         offsets: Offsets,
         limits: Limits,
     ) -> Self {
-        let mut counted = machine.clone();
-        let first = offsets.tools.first().map(|(_, length)| *length);
-        // The words of a robot have the tool in the spindle in them, whichever it is.
-        if spoken.writes.lengths() == Lengths::WorkOffset
-            && spoken.language != Language::Joints
-            && let Some(length) = offsets.length.or(first)
-        {
-            counted.gauge -= machine.tool_axis * length;
-        }
         let lexicon = Lexicon::new(spoken.language, spoken.writes, &spoken.words);
         Self {
             machine: machine.clone(),
-            counted,
             spoken,
             lexicon,
             offsets,
@@ -118,11 +106,11 @@ impl NcControl {
         name: &str,
         input: impl Read + Seek + Send + 'i,
     ) -> Result<RunningProgram<'i>, Box<Diagnostic>> {
-        let Self { counted, lexicon, offsets, own_lines, limits, .. } = self;
+        let Self { machine, lexicon, offsets, own_lines, limits, .. } = self;
         let mut input = input;
         other_language::refuse(&self.machine, self.spoken.language, name, &mut input)?;
         let input: ProgramText<'i> = Box::new(input);
-        let program = Interpreter::new(counted, lexicon, offsets, *limits, name, input)?;
+        let program = Interpreter::new(machine, lexicon, offsets, *limits, name, input)?;
         Ok(program.declaring(own_lines.iter().map(String::as_str)))
     }
 

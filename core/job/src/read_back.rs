@@ -328,7 +328,7 @@ pub fn hold<C: Course>(
         ..rules(reading, &control, &tools)
     };
     let own = rules.own;
-    let mut verifier = Verifier::new(&control.counted, rules, course);
+    let mut verifier = Verifier::new(&control.machine, rules, course);
     if let Some(cut_path) = cut_path {
         verifier = verifier.near(cut_path);
     }
@@ -434,7 +434,7 @@ fn own_stops(machine: &Machine, control: &NcControl) -> OwnStops {
 
 /// What a program is held to.
 fn rules(reading: &ReadingSetup<'_>, control: &NcControl, tools: &[ClTool]) -> VerifyRules {
-    let NcControl { counted: machine, spoken, lexicon, offsets, .. } = control;
+    let NcControl { machine, spoken, lexicon, offsets, .. } = control;
     let length_from = lexicon.lengths();
     let [tolerance, axis_tolerance] = reading.tolerances;
     let standard = VerifyRules::of(machine);

@@ -20,7 +20,7 @@ pub fn cycle_time(
     name: &str,
     text: ProgramText<'_>,
 ) -> Result<Option<f64>, Failure> {
-    let machine = &control.counted;
+    let machine = &control.machine;
     if machine.axes.iter().any(|axis| axis.max_feed.is_infinite() || axis.max_accel.is_infinite()) {
         return Ok(None);
     }

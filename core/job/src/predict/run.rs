@@ -133,7 +133,7 @@ pub fn predict(
     let (input, length) = Watched::new(input).map_err(unreadable)?;
     let position = input.position();
     let run = control.run(name, BufReader::new(input)).map_err(|fault| *fault)?;
-    let (machine, period) = (&control.counted, asked.period());
+    let (machine, period) = (&control.machine, asked.period());
     let stages = Stages::new(machine, period, path)?;
     let mut stream = SetPointStream::new(name, machine, stages);
     let trajectory = Trajectory::new(name, run, machine, period, watch.sees_blocks());

@@ -10,7 +10,7 @@ use post_machine::kinematics::chain::turn;
 use post_machine::kinematics::{Joints, MAX_AXES, Turns};
 use post_machine::tilted_plane::TiltedPlane;
 use post_machine::wait_rule::WaitRule;
-use post_plugin::Language;
+use post_plugin::{Language, Lengths};
 
 use super::ReadReport;
 use super::block_words::bit;
@@ -182,7 +182,16 @@ impl ControlState {
             solvers: vec![(0.0, solver)],
         };
         control.stand(&start(machine));
-        control.recount()?;
+        // A program that names no tool is of the one in the spindle.
+        let first = offsets.tools.first().map(|(_, length)| *length);
+        let length = offsets.length.or(first).filter(|_| lexicon.lengths() == Lengths::WorkOffset);
+        match length {
+            Some(length) => {
+                control.state.length = length;
+                control.solver_changed()?;
+            }
+            None => control.recount()?,
+        }
         Ok(control)
     }
 

@@ -3,7 +3,7 @@
 use post_machine::description::LengthAxis;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
-use post_plugin::Language;
+use post_plugin::{Language, Lengths};
 
 use super::ModesInForce;
 use super::state::{ArcPlane, ControlState};
@@ -85,6 +85,7 @@ impl ControlState {
     fn is_whole(&self) -> bool {
         let mut axes = self.machine.axes.iter();
         self.lexicon.language() == Language::Joints
+            || self.lexicon.lengths() == Lengths::WorkOffset
             || self.machine.length_axis == LengthAxis::None
             || axes.all(|axis| axis.joint.rotary)
     }
@@ -164,6 +165,10 @@ impl ControlState {
                 *shown = -axis.zero;
             }
             return shown;
+        }
+        // Whoever changes the tool measures the work offset with it.
+        if self.lexicon.lengths() == Lengths::WorkOffset {
+            return exact;
         }
         let [.., z] = self.axes.cartesian;
         let place = match (self.machine.length_axis, self.lexicon.language()) {

@@ -462,8 +462,9 @@ typedef struct {
 /* 2 numbers: POST_COMPENSATE_… and the register of the radius. */
 #define POST_AT_COMPENSATE_COMPENSATION 0u
 /* The first position after a Event::Retract or a tool change. The tool stands clear of the part, the rotary axes
- * have been turned by Event::Turn. The dialect puts the compensation in force (length compensation, or tool
- * centre point control if Setup::tcp) in the order that its control needs, and goes to the words at rapid. */
+ * have been turned by Event::Turn (of an arm on axes that slide all go at once here). The dialect puts the
+ * compensation in force (length compensation, or tool centre point control if Setup::tcp) in the order that its
+ * control needs, and goes to the words at rapid. */
 #define POST_EVENT_POSITION 9u
 /* 6 numbers: Where the tool stands then; none where nobody knows. */
 #define POST_AT_POSITION_TOOL 0u
@@ -472,8 +473,9 @@ typedef struct {
 /* The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the plane
  * comes first, the depth last. Else (in a tilted plane under a head that leans; under tool centre point control
  * where the tool leans, the part is turned or the control has no block of its own that begins it; where the
- * machine file says how the tool leaves) all linear words stand in one block. It leads to a point clear of the
- * part, from which the next moves come in along the tool. */
+ * machine file says how the tool leaves) all linear words stand in one block, and with them the rotary ones that
+ * were not turned before. It leads to a point clear of the part, from which the next moves come in along the
+ * tool. */
 #define POST_AT_POSITION_PLANE_FIRST 8u
 /* how many there are, and behind it as many: All axis words, in the order of Setup::words. */
 #define POST_AT_POSITION_WORDS 9u

@@ -217,9 +217,9 @@ events! { <'a>
         compensation: Compensation
     );
     /// The first position after a [`Event::Retract`] or a tool change. The tool stands clear of the part, the rotary
-    /// axes have been turned by [`Event::Turn`]. The dialect puts the compensation in force (length compensation, or
-    /// tool centre point control if [`Setup::tcp`](crate::Setup::tcp)) in the order that its control needs, and goes
-    /// to the words at rapid.
+    /// axes have been turned by [`Event::Turn`] (of an arm on axes that slide all go at once here). The dialect puts
+    /// the compensation in force (length compensation, or tool centre point control if
+    /// [`Setup::tcp`](crate::Setup::tcp)) in the order that its control needs, and goes to the words at rapid.
     9 POSITION "a first position" Position {
         /// Where the tool stands then; none where nobody knows.
         tool: Option<ToolPose>,
@@ -228,8 +228,9 @@ events! { <'a>
         /// The words of the plane move the tool across, that of the depth along the spindle, and nothing else: the
         /// plane comes first, the depth last. Else (in a tilted plane under a head that leans; under tool centre point
         /// control where the tool leans, the part is turned or the control has no block of its own that begins it;
-        /// where the machine file says how the tool leaves) all linear words stand in one block. It leads to a point
-        /// clear of the part, from which the next moves come in along the tool.
+        /// where the machine file says how the tool leaves) all linear words stand in one block, and with them the
+        /// rotary ones that were not turned before. It leads to a point clear of the part, from which the next moves
+        /// come in along the tool.
         plane_first: bool,
         /// All axis words, in the order of [`Setup::words`](crate::Setup::words).
         words: &'a [f64],

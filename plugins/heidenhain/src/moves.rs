@@ -34,8 +34,10 @@ impl Heidenhain {
         out: &mut String,
     ) -> Result<(), String> {
         self.radius.forget();
-        // The rotary axes have been turned; what is left of them here moves nothing else.
-        self.rapid_group(words, Group::Rotary, out)?;
+        // The rotary axes have been turned; what is left of them here moves nothing else, but where all axes go at once.
+        if plane_first || self.tcp || self.tilted {
+            self.rapid_group(words, Group::Rotary, out)?;
+        }
         if self.tcp && !self.tilted && self.tcp_active.set(true) {
             self.vector = None;
             self.own(&self.tcp_on.clone(), out);

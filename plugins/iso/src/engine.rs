@@ -330,8 +330,7 @@ impl Engine {
             Event::Coolant(coolant) => self.cool(coolant, out)?,
             Event::Compensate(compensation) => self.motion.compensate(compensation),
             Event::Turn { words } => {
-                self.cancel_what_was(out);
-                self.offset_before_position(out);
+                self.before_position(out);
                 self.motion.turn(words, out);
             }
             Event::Position { words, feed, plane_first, tool } => {
@@ -436,6 +435,12 @@ impl Engine {
         if !self.own_offset && self.offset_active.set(true) {
             self.motion.line(&self.work_offset, out);
         }
+    }
+
+    /// What comes ahead of the first words of a way to a first position.
+    pub fn before_position(&mut self, out: &mut String) {
+        self.cancel_what_was(out);
+        self.offset_before_position(out);
     }
 
     fn offset_before_position(&mut self, out: &mut String) {

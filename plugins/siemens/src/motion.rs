@@ -56,7 +56,11 @@ impl Siemens {
         engine: &mut Engine,
         out: &mut String,
     ) -> Result<(), String> {
-        engine.write(&Event::Turn { words }, out)?;
+        match plane_first || self.tcp || self.tilted {
+            true => engine.write(&Event::Turn { words }, out)?,
+            // All axes go at once.
+            false => engine.before_position(out),
+        }
         self.upright(engine, out);
         self.length_on(engine, out);
         if self.tcp && !self.tilted && self.tcp_active.set(true) {

@@ -135,7 +135,7 @@ impl BlockStage<'_> {
             return word != DEPTH || !along;
         }
         if machine.control.tcp == Tcp::Post {
-            return false;
+            return !placer.solver().places_tip() && !self.comes_in_by_depth(node, &way);
         }
         // Ahead of a block that has the control keep the tip with a move, words are axis positions: the same where
         // nothing is turned.
@@ -160,6 +160,16 @@ impl BlockStage<'_> {
         leans
             || ToolAlignment::of(&node.target.axis, &way) != ToolAlignment::Along
             || node.trace.pose.axis.cross(&way).norm() > LEANS
+    }
+
+    /// The axis that retracts the tool, which goes along `way`, leads it in along its own line. The slide of an arm leads it
+    /// wherever the arm points it.
+    fn comes_in_by_depth(&self, node: &PathNode, way: &Vector3<f64>) -> bool {
+        let line = node.trace.pose.axis;
+        self.retract().is_some_and(|retract| {
+            ToolAlignment::of(&line, way) == ToolAlignment::Along
+                && retract.up * way.dot(&line) > 0.0
+        })
     }
 
     /// Where the tool comes by to `node`, from the retract on: the place farthest out on its own line from which it goes

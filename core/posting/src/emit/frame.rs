@@ -366,7 +366,7 @@ impl EmitStage<'_> {
                 self.extremes.reach(&to);
             }
         }
-        let turns = self.machine.axes.iter().any(|axis| axis.joint.rotary);
+        let rotary = self.machine.axes.iter().any(|axis| axis.joint.rotary);
         self.retract(line);
         self.tell_compensation();
         if self.spindle.tool_changed
@@ -392,8 +392,11 @@ impl EmitStage<'_> {
         }
         let way = self.across.take();
         way.iter().flat_map(|way| &way.through).for_each(|place| self.go_by(line, place));
-        if turns {
+        if rotary {
             self.say_turned(line, TextPlace::BeforeTurn, words);
+        }
+        let turns = rotary && !self.comes_at_once();
+        if turns {
             self.writer.push(line, Event::Turn { words });
             for joint in 0..self.machine.axes.len() {
                 if self.machine.axes[joint].joint.rotary {
@@ -422,7 +425,7 @@ impl EmitStage<'_> {
             );
         }
         if !self.plane.on {
-            self.came_with_tcp = turns && self.machine.control.tcp == Tcp::Control;
+            self.came_with_tcp = rotary && self.machine.control.tcp == Tcp::Control;
             if self.came_with_tcp {
                 self.say_turned(line, TextPlace::BeforeTcp, words);
             }
@@ -445,6 +448,21 @@ impl EmitStage<'_> {
         for joint in 0..self.machine.axes.len() {
             self.set_clamp(line, joint, true, false);
         }
+        if rotary && !turns {
+            self.say_turned(line, TextPlace::AfterTurn, words);
+        }
+    }
+
+    /// The tool is led by linear and rotary axes together, and no axis of its own retracts it: with one of them alone, ahead
+    /// of the others, it would go anywhere.
+    fn comes_at_once(&self) -> bool {
+        let machine = self.machine;
+        let retracts = machine.frame.leave.is_none() && !machine.frame.retract.is_empty();
+        let slides = machine.axes.iter().any(|axis| !axis.joint.rotary);
+        machine.control.tcp == Tcp::Post
+            && slides
+            && !retracts
+            && machine.solver(0.0).is_ok_and(|solver| !solver.places_tip())
     }
 
     /// The words after it are those of a plane, or of none: the plane before it ends, the tool clear of the

@@ -24,8 +24,10 @@ impl Engine {
         self.cancel_what_was(out);
         self.settings.smoothing_due(&mut self.motion, out);
         self.offset_before_position(out);
-        // The rotary axes have been turned; what is left of them here moves nothing else.
-        self.motion.turn(words, out);
+        // The rotary axes have been turned; what is left of them here moves nothing else, but where all axes go at once.
+        if plane_first || keeps_tip || self.plane.is_on() {
+            self.motion.turn(words, out);
+        }
         let across =
             plane_first && keeps_tip && tool.is_some_and(|tool| self.motion.lies_across(tool.axis));
         if plane_first && !across {

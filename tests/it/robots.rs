@@ -96,3 +96,114 @@ fn a_rail_stands_still_where_the_arm_reaches() {
     let far = posted("irb4600-rail", 100.0, &holes(700.0));
     assert!(span(&far, 0) > 1000.0, "the rail goes {}", span(&far, 0));
 }
+
+/// A cut 10 mm into a face of a block whose outward normal is `axis`, 30 mm from the part's origin, and 15 mm along it; the
+/// tool comes to `first`, mm out and aside, at rapid, or to 3 mm out at feed, if there is none.
+fn slot(axis: [f64; 3], first: Option<[f64; 2]>) -> String {
+    let aside = if axis[2].abs() < 0.9 { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+    let goto = |out: f64, along: f64| {
+        let [x, y, z] =
+            std::array::from_fn(|place| axis[place] * (30.0 + out) + aside[place] * along);
+        format!("GOTO/{x:.4},{y:.4},{z:.4},{},{},{}\n", axis[0], axis[1], axis[2])
+    };
+    let come = match first {
+        Some([out, along]) => {
+            format!("RAPID\n{}RAPID\n{}", goto(out, along), goto(out, 0.0))
+        }
+        None => format!("FEDRAT/200\n{}", goto(3.0, 0.0)),
+    };
+    let cut = [goto(-10.0, 0.0), goto(-10.0, 15.0)].concat();
+    let leave = goto(60.0, 15.0);
+    format!(
+        "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\n{come}FEDRAT/200\n{cut}RAPID\n{leave}SPINDL/OFF\nFINI\n"
+    )
+}
+
+/// A program with its CL file in a folder.
+struct Program {
+    folder: tempfile::TempDir,
+    machine: &'static str,
+    length: &'static str,
+    text: String,
+}
+
+impl Program {
+    /// None where the machine does not reach it.
+    fn of(machine: &'static str, length: &'static str, cl: &str) -> Option<Self> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("part.cls");
+        fs::write(&file, cl).unwrap();
+        let job = ["-q", "-m", machine, "--tool-length", length, "-o", "-"];
+        let run = post(&[&job[..], &[file.to_str().unwrap()]].concat());
+        (run.code == 0).then_some(Self { folder, machine, length, text: run.out })
+    }
+
+    /// What `verify` says of a program for the same file.
+    fn verified(&self, text: &str, more: &[&str]) -> crate::common::Run {
+        let [cl, nc] = ["part.cls", "part.nc"].map(|name| self.folder.path().join(name));
+        fs::write(&nc, text).unwrap();
+        let job = ["-m", self.machine, "--tool-length", self.length];
+        let [cl, nc] = [cl.to_str().unwrap(), nc.to_str().unwrap()];
+        post(&[&["verify", "-q", nc, "--against", cl][..], &job, more].concat())
+    }
+}
+
+/// An arm on a rail comes to its first position with all axes at once, whichever way the tool points: with the rail alone it
+/// came through what it cuts. The tool then goes in along its own line, at feed too.
+#[test]
+fn no_first_approach_crosses_what_is_cut() {
+    let mut posted = 0;
+    for (machine, length) in [("irb4600-rail", "100"), ("kr6-r700", "60")] {
+        for axis in [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]] {
+            for first in [Some([80.0, 0.0]), Some([2.0, 60.0]), Some([0.0, 0.0]), None] {
+                let Some(program) = Program::of(machine, length, &slot(axis, first)) else {
+                    continue;
+                };
+                posted += 1;
+                for more in [&[][..], &["--posted"]] {
+                    let run = program.verified(&program.text, more);
+                    assert_eq!(run.code, 0, "{machine} {axis:?} {first:?}: {}", run.err);
+                    assert!(!run.err.contains("a rapid comes to"), "{}", run.err);
+                }
+                if machine == "irb4600-rail" {
+                    let mut moves = program.text.lines().filter(|line| line.contains(" G0 "));
+                    let moves = moves.next().unwrap();
+                    assert!([" Y", " U", " A"].iter().all(|word| moves.contains(word)), "{moves}");
+                }
+            }
+        }
+    }
+    assert!(posted >= 28, "{posted}");
+}
+
+/// A word of a rapid of an arm that leads the tip off its way, into the part, is told: as the program was posted, and as that
+/// of another hand where the tip goes lower than all that is asked for.
+#[test]
+fn no_rapid_of_an_arm_leads_the_tip_astray() {
+    let cl = slot([0.0, 0.0, 1.0], Some([80.0, 0.0]));
+    let program = Program::of("irb4600-rail", "100", &cl).unwrap();
+    let lines: Vec<&str> = program.text.lines().collect();
+    let leaves = lines.iter().rposition(|line| line.contains(" G0 ")).unwrap();
+    let changed = |place: usize, word: &str, by: f64| {
+        let mut lines: Vec<String> = lines.iter().map(|line| (*line).to_owned()).collect();
+        let words = lines[place].split(' ').map(|own| match own.strip_prefix(word) {
+            Some(value) => format!("{word}{:.4}", value.parse::<f64>().unwrap() + by),
+            None => own.to_owned(),
+        });
+        lines[place] = words.collect::<Vec<String>>().join(" ");
+        lines.join("\n") + "\n"
+    };
+    for (word, by) in [("B", 20.0), ("B", 5.0), ("V", 20.0)] {
+        let text = changed(leaves, word, by);
+        assert_ne!(text, program.text);
+        let run = program.verified(&text, &["--posted"]);
+        assert!(run.err.contains("mm from all where the CL file sends it"), "{word}: {}", run.err);
+        assert_eq!(run.code, 1);
+    }
+    let aside = program.text.replace(lines[leaves], &format!("{} Y60.000", lines[leaves]));
+    let run = program.verified(&aside, &["--posted"]);
+    assert!(run.err.contains("mm from all where the CL file sends it"), "{}", run.err);
+    let run = program.verified(&changed(leaves, "B", 20.0), &[]);
+    assert!(run.err.contains("mm lower than all that the CL file asks for"), "{}", run.err);
+    assert_eq!(run.code, 1);
+}

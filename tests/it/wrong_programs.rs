@@ -701,3 +701,16 @@ fn no_rapid_goes_along_a_cut_that_was_not_made() {
         "error[rapid]: a rapid goes 7.9 mm along a cut that was not made yet",
     );
 }
+
+/// A rapid goes down aside of all places that are asked for, to where the last cut ended, and comes back.
+#[test]
+fn no_rapid_plunges_where_nothing_is_asked_for() {
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/20,0,50\nRAPID\nGOTO/20,0,5\nFEDRAT/200,MMPM\n\
+              GOTO/20,0,-2\nGOTO/20,30,-2\nGOTO/-20,30,-2\nRAPID\nGOTO/-20,30,5\nRAPID\nGOTO/60,30,5\n\
+              FEDRAT/200,MMPM\nGOTO/60,30,-2\nGOTO/80,30,-2\nRAPID\nGOTO/80,30,50\nFINI\n";
+    let posted = Posted::new(cl, "fanuc");
+    posted.told(
+        ("G0 Z5.000\n", "G0 Z5.000\nX40.\nZ-2.\nZ5.\nX-20.\n"),
+        "error[rapid]: a rapid takes Z 7.000 mm from all where the CL file and the machine file send it",
+    );
+}

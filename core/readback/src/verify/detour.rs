@@ -2,8 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::Vector3;
 use post_machine::axis_words::is_depth;
 use post_machine::description::Machine;
+use post_machine::kinematics::orientation::on_two_faces;
 use post_machine::kinematics::{Joints, Pose};
 
 use super::retract;
@@ -22,7 +24,10 @@ const SAME_LINE: f64 = 1e-3;
 /// as the machine file says. Where a way of the course leads the tip, its axes stand as that asks. In a program that was
 /// posted for this machine file, rotary axes turn where the tool is retracted, or with the tip on a way of the course or
 /// on the line of the tool at one of its places, and other axes stand between those places only if the tool was
-/// retracted; in another program nothing is said of the other axes while one turns. Of a machine whose ways between
+/// retracted; in another program nothing is said of the other axes while one turns. An arm is held by its tip, not by its
+/// axes: in a program that was posted it stands on a way of the course or on the line of the tool at one of its places, or
+/// the tool is retracted; in another it comes no lower than at all places that are asked for, as the tool stands there. No
+/// rapid goes down to where the last cut ended but on the line of the tool there. Of a machine whose ways between
 /// passes are those that bodies leave (`low_retracts`, `link`) it is said of positions of the machine alone that the
 /// depth goes no deeper than at all places that are asked for, and nothing of where axes turn: that is a matter of
 /// clearance.
@@ -39,6 +44,8 @@ pub(super) struct Detour {
 struct AskedPlace {
     joints: Joints,
     pose: Pose,
+    /// The last cut ended there.
+    left: bool,
 }
 
 /// How far a rapid may end from what is asked for.
@@ -48,6 +55,8 @@ pub(super) struct RapidAllowance {
     pub axes: [f64; 2],
     /// By how much the tool may lean otherwise, radians.
     pub lean: f64,
+    /// Rotary axes place the tip: its place is looked at, not theirs.
+    pub arm: bool,
 }
 
 /// Where a rapid ends that nothing asks for.
@@ -56,11 +65,15 @@ struct RapidEnd {
     line: u64,
     number: Option<u64>,
     from: Joints,
+    /// Where its tip came from, mm.
+    came: Vector3<f64>,
     joints: Joints,
     pose: Pose,
     machine: bool,
     /// A way of the course leads the tip past it.
     led: bool,
+    /// So many places were asked for before.
+    behind: usize,
 }
 
 /// How a rapid went astray.
@@ -72,6 +85,10 @@ pub(super) enum StrayKind {
     Short,
     /// A rotary axis turns where the tool is neither on the course nor retracted.
     Turns,
+    /// The tip of an arm stands where nothing sends it.
+    Tip,
+    /// The tip of an arm stands lower than at all places that are asked for.
+    Low,
 }
 
 /// A rapid that went astray.
@@ -79,7 +96,8 @@ pub(super) enum StrayKind {
 pub(super) struct StrayRapid {
     pub line: u64,
     pub number: Option<u64>,
-    /// The axis, and how far it is from all where it could stand, or how far it turns: mm or degrees.
+    /// The axis, and how far it is from all where it could stand, or how far it turns: mm or degrees. Of an arm's tip how far
+    /// that is, mm.
     pub axis: usize,
     pub by: f64,
     pub kind: StrayKind,
@@ -92,19 +110,21 @@ impl Detour {
     /// to where the rapid began.
     pub fn take(&mut self, motion: &Motion, [asked, led]: [bool; 2], known: bool) {
         if known && self.asked.is_empty() {
-            self.ask(&motion.from.joints, &motion.from.pose);
+            self.ask(&motion.from.joints, &motion.from.pose, true);
         }
         if asked {
-            self.ask(&motion.to.joints, &motion.to.pose);
+            self.ask(&motion.to.joints, &motion.to.pose, false);
         } else if self.open.len() < MOST {
             self.open.push(RapidEnd {
                 line: motion.line,
                 number: motion.number,
                 from: motion.from.joints,
+                came: motion.from.pose.tip,
                 joints: motion.to.joints,
                 pose: motion.to.pose,
                 machine: motion.machine,
                 led,
+                behind: self.asked.len() + self.passed.len(),
             });
         }
     }
@@ -126,7 +146,7 @@ impl Detour {
         allowed: RapidAllowance,
     ) -> Option<StrayRapid> {
         if let Some(motion) = motion {
-            self.ask(&motion.from.joints, &motion.from.pose);
+            self.ask(&motion.from.joints, &motion.from.pose, false);
         }
         let asked = std::mem::take(&mut self.asked);
         let open = std::mem::take(&mut self.open);
@@ -134,8 +154,8 @@ impl Detour {
         if asked.is_empty() {
             return None;
         }
-        let RapidAllowance { axes: slack, lean } =
-            RapidAllowance { lean: allowed.lean + SAME_LINE, ..allowed };
+        let allowed = RapidAllowance { lean: allowed.lean + SAME_LINE, ..allowed };
+        let RapidAllowance { axes: slack, lean, arm } = allowed;
         let passed = &passed;
         let on_a_line = |end: &RapidEnd| {
             let mut places = asked.iter().map(|asked| &asked.pose).chain(passed);
@@ -146,40 +166,45 @@ impl Detour {
             let next = open.get(place + 1).filter(|next| on_a_line(next));
             !end.machine
                 && (passed.any(|pose| end.on_the_line(pose, slack[0], lean))
-                    || next.is_some_and(|next| end.is_over(next, machine, slack)))
+                    || !arm && next.is_some_and(|next| end.is_over(next, machine, slack)))
         };
         // An arm that is led to such a place has other values there than at the points that are asked for, and what turns
         // first has them already.
         let led: Vec<Joints> =
             open.iter().filter(|end| on_a_line(end)).map(|end| end.joints).collect();
+        let open_ends = &open;
         let mut open = open.iter().enumerate().filter(|end| !goes(end));
-        open.find_map(|(_, end)| {
+        open.find_map(|(place, end)| {
             let poses = asked.iter().map(|asked| &asked.pose).chain(passed);
             // Ways that bodies leave are proven, wherever axes turn on them.
             let proven = machine.clearance.shortens_ways();
             match end.turns(machine, slack) {
                 Some(_) if own && proven => None,
+                _ if arm && own && !end.machine && !proven => {
+                    end.tip_astray(machine, poses, slack[0])
+                }
+                _ if arm && !own && !end.machine => {
+                    // Another hand may have it come from anywhere, and go home in the end.
+                    let came = end.behind > 0 || open_ends[..place].iter().any(on_a_line);
+                    let goes_on = motion.is_some() || end.behind < asked.len() + passed.len();
+                    (came && goes_on).then(|| end.tip_low(&asked, poses, slack[0])).flatten()
+                }
                 Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
                 _ if end.led && (own || end.leans_as(&asked, lean)) => None,
                 _ => {
-                    let retracted = retract::lacks(machine, &end.from, slack[0]).is_none();
-                    end.astray(
-                        machine,
-                        &asked,
-                        &led,
-                        !own || proven || retracted,
-                        RapidAllowance { axes: slack, lean },
-                    )
+                    let retracted = retract::is_retracted(machine, &end.from, slack[0]);
+                    let between = !own || proven || retracted;
+                    end.astray(machine, &asked, &led, between, allowed)
                 }
             }
         })
     }
 
-    fn ask(&mut self, joints: &Joints, pose: &Pose) {
+    fn ask(&mut self, joints: &Joints, pose: &Pose, left: bool) {
         if self.asked.len() == MOST {
             self.asked.remove(0);
         }
-        self.asked.push(AskedPlace { joints: *joints, pose: *pose });
+        self.asked.push(AskedPlace { joints: *joints, pose: *pose, left });
     }
 }
 
@@ -203,25 +228,67 @@ impl RapidEnd {
         mut poses: impl Iterator<Item = &'p Pose>,
         slack: f64,
     ) -> Option<StrayRapid> {
-        let ends = [&self.from, &self.joints];
-        let retracted = ends.iter().all(|joints| retract::lacks(machine, joints, slack).is_none());
-        let on_line = |pose: &Pose| {
-            let way = self.pose.tip - pose.tip;
-            let along = way.dot(&pose.axis);
-            along >= -slack && (way - pose.axis * along).norm() <= slack
-        };
-        if retracted || self.led || poses.any(on_line) {
+        let on_line = |pose: &Pose| self.off_line(pose, slack) <= slack;
+        if self.stays_retracted(machine, slack) || self.led || poses.any(on_line) {
             return None;
         }
         let turned = libm::fabs(self.joints[axis] - self.from[axis]);
-        Some(StrayRapid {
-            line: self.line,
-            number: self.number,
-            axis,
-            by: turned / machine.axes[axis].unit(),
-            kind: StrayKind::Turns,
-            machine: self.machine,
-        })
+        Some(self.stray(axis, turned / machine.axes[axis].unit(), StrayKind::Turns))
+    }
+
+    /// The tip of an arm stands neither on a way of the course, nor on the line of the tool at one of its places, nor is the
+    /// tool retracted.
+    fn tip_astray<'p>(
+        &self,
+        machine: &Machine,
+        poses: impl Iterator<Item = &'p Pose>,
+        slack: f64,
+    ) -> Option<StrayRapid> {
+        let off = poses.map(|pose| self.off_line(pose, slack)).fold(f64::INFINITY, f64::min);
+        let sent = self.led || off <= slack || self.stays_retracted(machine, slack);
+        (!sent).then(|| self.stray(0, off, StrayKind::Tip))
+    }
+
+    /// The tip of an arm stands lower than at all places that are asked for, as the tool stands there, or goes down to where
+    /// the last cut ended. Nothing is said where the tool stands on two faces of the part: past which side it goes from one
+    /// to the other is its own business.
+    fn tip_low<'p>(
+        &self,
+        asked: &[AskedPlace],
+        mut poses: impl Iterator<Item = &'p Pose>,
+        slack: f64,
+    ) -> Option<StrayRapid> {
+        let first = &asked.first()?.pose.axis;
+        let faces = asked.iter().any(|asked| on_two_faces(first, &asked.pose.axis));
+        if self.led || faces || poses.any(|pose| self.off_line(pose, slack) <= slack) {
+            return None;
+        }
+        let falls = |pose: &Pose| (self.came - self.pose.tip).dot(&pose.axis) > slack;
+        let below = |pose: &Pose| (pose.tip - self.pose.tip).dot(&pose.axis);
+        let places = asked.iter().filter(|asked| !asked.left || !falls(&asked.pose));
+        let by = places.map(|asked| below(&asked.pose)).fold(f64::INFINITY, f64::min);
+        (by > slack && by.is_finite()).then(|| self.stray(0, by, StrayKind::Low))
+    }
+
+    /// A way from one place to another at which the machine file has the tool retracted.
+    fn stays_retracted(&self, machine: &Machine, slack: f64) -> bool {
+        let mut ends = [&self.from, &self.joints].into_iter();
+        ends.all(|joints| retract::is_retracted(machine, joints, slack))
+    }
+
+    /// How far the tip is off the line of a tool at a place of the course, from `slack` mm below that place outwards, mm.
+    fn off_line(&self, asked: &Pose, slack: f64) -> f64 {
+        let way = self.pose.tip - asked.tip;
+        let along = way.dot(&asked.axis);
+        match along >= -slack {
+            true => (way - asked.axis * along).norm(),
+            false => way.norm(),
+        }
+    }
+
+    fn stray(&self, axis: usize, by: f64, kind: StrayKind) -> StrayRapid {
+        let Self { line, number, machine, .. } = *self;
+        StrayRapid { line, number, axis, by, kind, machine }
     }
 
     /// The axis that is farthest from where it could stand: between two places that are asked for, if `between`, or where
@@ -234,7 +301,7 @@ impl RapidEnd {
         between: bool,
         allowed: RapidAllowance,
     ) -> Option<StrayRapid> {
-        let RapidAllowance { axes: slack, lean } = allowed;
+        let RapidAllowance { axes: slack, lean, .. } = allowed;
         let mut places = asked.iter().map(|asked| &asked.pose);
         if !self.machine && places.any(|pose| self.on_the_line(pose, slack[0], lean)) {
             return None;
@@ -263,11 +330,17 @@ impl RapidEnd {
                 }
                 by = by.min(libm::fabs(apart));
             };
-            asked.iter().for_each(|asked| allow(asked.joints[place]));
+            // Down to where the last cut ended it goes on the line of the tool there alone.
+            let away = axis.joint.direction.dot(&machine.tool_axis).signum();
+            let falls = is_depth(machine, place) && away * (value - self.from[place]) < 0.0;
+            let others = asked.iter().any(|asked| !asked.left);
+            let sends = |asked: &&AskedPlace| !(asked.left && falls && others && !self.machine);
+            let asked = || asked.iter().filter(sends);
+            asked().for_each(|asked| allow(asked.joints[place]));
             if !is_depth(machine, place) {
                 led.iter().for_each(|led| allow(led[place]));
             }
-            let [least, most] = span(asked, place);
+            let [least, most] = span(asked(), place);
             if between || self.machine || goes_round {
                 allow(value.clamp(least, most.max(least)));
             }
@@ -279,7 +352,6 @@ impl RapidEnd {
                 }
             }
             if is_depth(machine, place) {
-                let away = axis.joint.direction.dot(&machine.tool_axis).signum();
                 let retract = frame.retract.iter().find(|(other, _)| *other == place);
                 let least = match retract {
                     Some((_, retract)) if self.machine && !proven => {
@@ -287,22 +359,14 @@ impl RapidEnd {
                         away * retract
                     }
                     _ => {
-                        let asked = asked.iter().map(|asked| away * asked.joints[place]);
+                        let asked = asked().map(|asked| away * asked.joints[place]);
                         asked.fold(f64::INFINITY, f64::min)
                     }
                 };
                 by = by.min((least - away * value).max(0.0));
             }
             if by > slack && worst.as_ref().is_none_or(|(most, _)| by / slack > *most) {
-                let astray = StrayRapid {
-                    line: self.line,
-                    number: self.number,
-                    axis: place,
-                    by: by / axis.unit(),
-                    kind,
-                    machine: self.machine,
-                };
-                worst = Some((by / slack, astray));
+                worst = Some((by / slack, self.stray(place, by / axis.unit(), kind)));
             }
         }
         worst.map(|(_, astray)| astray)
@@ -337,8 +401,8 @@ impl RapidEnd {
 }
 
 /// The least and the largest value of an axis at all places that are asked for.
-fn span(asked: &[AskedPlace], place: usize) -> [f64; 2] {
-    let values = asked.iter().map(|asked| asked.joints[place]);
+fn span<'a>(asked: impl Iterator<Item = &'a AskedPlace>, place: usize) -> [f64; 2] {
+    let values = asked.map(|asked| asked.joints[place]);
     let ends = [f64::INFINITY, f64::NEG_INFINITY];
     values.fold(ends, |[least, most], value| [least.min(value), most.max(value)])
 }

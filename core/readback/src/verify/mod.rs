@@ -42,7 +42,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::{Severity, SourceFiles};
-use post_machine::kinematics::Joints;
+use post_machine::kinematics::{Joints, Solver};
 use post_plugin::Lengths;
 
 use crate::course::Course;
@@ -193,6 +193,8 @@ pub struct Verifier<'m, C> {
     machine: &'m Machine,
     /// Two linear axes place the tip, with a rotary one.
     planar: bool,
+    /// Rotary axes that carry the tool place the tip.
+    arm: bool,
     rules: VerifyRules,
     /// How far the guided point stands above the tip, mm.
     along: f64,
@@ -261,9 +263,13 @@ impl<'m, C: Course> Verifier<'m, C> {
             // Both sides are cut into pieces.
             PlaceBound { point: bound.point + 2.0 * sag.point, axis: bound.axis + 2.0 * sag.axis }
         };
+        let solver = machine.solver(0.0).ok();
+        let swings = machine.axes.iter().filter(|axis| axis.joint.rotary && !axis.carries_part);
+        let swings = swings.count() > 1;
         Self {
             machine,
-            planar: machine.solver(0.0).is_ok_and(|solver| solver.planar()),
+            planar: solver.as_ref().is_some_and(Solver::planar),
+            arm: swings && solver.is_some_and(|solver| !solver.places_tip()),
             along,
             sag,
             rapid_sag: PlaceBound::new(
@@ -360,8 +366,13 @@ impl<'m, C: Course> Verifier<'m, C> {
             }
             ProgramEvent::CycleEnd => self.cycle = None,
             ProgramEvent::ToolChange { .. } => {
+                self.look_for_a_cut(line);
                 self.turned.clear();
                 self.cut_end = None;
+                if self.arm && !self.rules.own {
+                    // Wherever another hand has the arm go for it.
+                    self.detour = Detour::default();
+                }
             }
             ProgramEvent::End => self.look_for_retract(line, "where the program ends"),
             ProgramEvent::Spindle(spindle) if self.turned.len() < track::MOST_SPEEDS => {
@@ -373,6 +384,15 @@ impl<'m, C: Course> Verifier<'m, C> {
                 self.turned.push(SpindleCommand { spindle: *spindle, line, passing: false });
             }
             _ => {}
+        }
+    }
+
+    /// A tool is not changed while it cuts, be it for itself.
+    fn look_for_a_cut(&mut self, line: u64) {
+        self.leave_cut();
+        if self.hole.is_some() || !self.apart && self.next.is_none() {
+            let message = "the tool is changed in the midst of a cut".to_owned();
+            self.fault_at("tool", message, Some(BlockPlace::of_line(line)), None, None);
         }
     }
 

@@ -59,7 +59,7 @@ impl<C: Course> Verifier<'_, C> {
     fn stays_retracted(&self, motion: &Motion) -> bool {
         let slack = self.rapid_bound.point;
         let machine = self.machine;
-        let retracted = |joints| retract::lacks(machine, joints, slack).is_none();
+        let retracted = |joints| retract::is_retracted(machine, joints, slack);
         !machine.frame.retract.is_empty()
             && retracted(&motion.from.joints)
             && retracted(&motion.to.joints)

@@ -50,7 +50,7 @@ impl<C: Course> Verifier<'_, C> {
             }
         }
         // Where a rapid comes from that leads to the course first of all, nothing has asked for.
-        let known = if self.rules.own { was_known } else { known };
+        let known = if self.rules.own || self.arm { was_known } else { known };
         self.detour.take(motion, [asked, led], known);
     }
 
@@ -283,7 +283,8 @@ impl<C: Course> Verifier<'_, C> {
     /// Rapids between the cuts must not lead where neither the course nor the machine file sends them.
     pub(super) fn look_for_detours(&mut self, motion: Option<&Motion>) {
         let axes = [self.rapid_bound.point, RAPID_TURN];
-        let allowed = RapidAllowance { axes, lean: self.rules.axis_tolerance };
+        let lean = self.rules.axis_tolerance;
+        let allowed = RapidAllowance { axes, lean, arm: self.arm };
         let own = self.rules.own;
         let Some(astray) = self.detour.end(self.machine, motion, own, allowed) else {
             return;
@@ -300,6 +301,12 @@ impl<C: Course> Verifier<'_, C> {
             }
             StrayKind::Far => format!(
                 "a rapid takes {name} {by:.3}{unit} from all where the CL file and the machine file send it"
+            ),
+            StrayKind::Tip => {
+                format!("a rapid takes the tip {by:.3} mm from all where the CL file sends it")
+            }
+            StrayKind::Low => format!(
+                "a rapid takes the tip {by:.3} mm lower than all that the CL file asks for between these cuts"
             ),
             StrayKind::Turns => format!(
                 "{name} turns by {by:.3}{unit} off the ways of the CL file, and the tool is not retracted"

@@ -34,6 +34,13 @@ pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(u
     short.max_by(|(_, one), (_, other)| one.total_cmp(other))
 }
 
+/// The tool is as far off the part as the machine file retracts it; nowhere, where that is off its own line alone.
+pub(super) fn is_retracted(machine: &Machine, joints: &Joints, slack: f64) -> bool {
+    let frame = &machine.frame;
+    let stays_on_line = frame.leave.is_some() && frame.retract.is_empty() && frame.aside.is_empty();
+    !stays_on_line && lacks(machine, joints, slack).is_none()
+}
+
 /// The axis that does not stand where the machine file has it for a tool change, and how far it is off, mm or degrees.
 fn off_change(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, f64)> {
     let off = machine.frame.change.iter().map(|(place, value)| {

@@ -11,8 +11,8 @@ use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, neares
 use super::report::{BlockPlace, lines_of};
 use super::track::ElementKind;
 use super::{COMPUTED, Verifier, state};
-use crate::Motion;
 use crate::course::Course;
+use crate::{Motion, MotionKind};
 
 /// A stretch of the program that is off the course.
 #[derive(Clone, Copy, Debug)]
@@ -507,10 +507,17 @@ impl<C: Course> Verifier<'_, C> {
         self.apart = true;
     }
 
-    /// Along its own axis at feed to where a cut may begin, or a point of the course stands.
+    /// Along its own axis at feed to where a cut may begin, or towards a first point that is reached at feed.
     fn comes_down(&mut self, places: &[ToolPlace]) -> bool {
         let (from, to) = (&places[0], &places[places.len() - 1]);
-        draws_back(&[*to, *from], &self.bound) && self.may_cut(to)
+        let bound = self.bound;
+        let mut over_first = || {
+            self.due().is_some_and(|due| {
+                matches!(due.what, ElementKind::Reach(MotionKind::Feed))
+                    && draws_back(&[due.to, *to], &bound)
+            })
+        };
+        draws_back(&[*to, *from], &bound) && (over_first() || self.may_cut(to))
     }
 }
 

@@ -207,3 +207,18 @@ fn no_rapid_of_an_arm_leads_the_tip_astray() {
     assert!(run.err.contains("mm lower than all that the CL file asks for"), "{}", run.err);
     assert_eq!(run.code, 1);
 }
+
+/// Words of a rail count from where it brings the tip nearest to the part origin, with the other axes at zero: so they are
+/// read, wherever along the rail the part lies.
+#[test]
+fn words_of_a_rail_are_read_as_they_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let [cl, nc] = ["part.cls", "part.nc"].map(|name| folder.path().join(name));
+    fs::write(&cl, slot([0.0, 0.0, 1.0], Some([80.0, 0.0]))).unwrap();
+    let [cl, nc] = [cl.to_str().unwrap(), nc.to_str().unwrap()];
+    let job = ["-m", "irb4600-rail", "--mount", "1200,400,700", "--tool-length", "100"];
+    let made = post(&[&["-q", "-o", nc, cl][..], &job].concat());
+    assert_eq!(made.code, 0, "{}", made.err);
+    let read = post(&[&["verify", "-q", "--posted", nc, "--against", cl][..], &job].concat());
+    assert_eq!(read.code, 0, "{}", read.err);
+}

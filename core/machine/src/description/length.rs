@@ -82,7 +82,7 @@ impl Machine {
             }
         }
         let turns = solver.chain().turns(&zero);
-        solver.place(Vector3::zeros(), &mut zero, &turns).ok()?;
+        solver.place_zero(&mut zero, &turns).ok()?;
         Some(zero)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use post_machine::axis_words::{is_diameter, unit_length};
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
@@ -359,7 +359,7 @@ impl ControlState {
         }
         let solver = &self.state.solver;
         let turns = solver.chain().turns(&exact);
-        if solver.place(Vector3::zeros(), &mut exact, &turns).is_err() {
+        if solver.place_zero(&mut exact, &turns).is_err() {
             let message = format!(
                 "the linear axes of {} do not bring the tip onto the part origin, so nothing is known of its work offset",
                 self.machine.name

@@ -592,15 +592,16 @@ fn a_robot_a_rail_and_a_positioner_are_nine_axes() {
     let tip = told["tip"]["value"].as_f64().unwrap();
     assert!(tip > 0.0 && tip <= 0.05, "{tip}: {}", right.err);
     assert_eq!((right.code, right.err.as_str()), (0, ""));
-    // The first rapid of some axes alone turns one of the wrist elsewhere, and the next leads it back.
-    let wrist = |line: &&str| line.starts_with("here.robax.rax_5:=") && !line.contains("=0.0000");
-    let turned = program.lines().find(wrist).unwrap();
-    let value: f64 = turned.split(['=', ';']).nth(1).unwrap().parse().unwrap();
-    let other = turned.replace(&format!("{value:.4}"), &format!("{:.4}", value + 25.0));
+    // The first rapid of all axes turns one of the wrist elsewhere, and the next leads it back.
+    let first = |line: &&str| line.starts_with("MoveAbsJ [[") && line.contains(",vmax,");
+    let turned = program.lines().find(first).unwrap();
+    let wrist = turned.split("[[").nth(1).and_then(|joints| joints.split(',').nth(4)).unwrap();
+    let value: f64 = wrist.parse().unwrap();
+    let other = turned.replace(&format!(",{wrist},"), &format!(",{:.4},", value + 25.0));
     assert_ne!(other, turned);
     fs::write(path.join("other.mod"), program.replacen(turned, &other, 1)).unwrap();
     let wrong = read("other.mod");
-    let found = wrong.code == 1 && wrong.err.contains("a rapid takes V");
+    let found = wrong.code == 1 && wrong.err.contains("a rapid takes the tip");
     assert!(found, "{}", wrong.err);
 }
 

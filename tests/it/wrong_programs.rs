@@ -714,3 +714,19 @@ fn no_rapid_plunges_where_nothing_is_asked_for() {
         "error[rapid]: a rapid takes Z 7.000 mm from all where the CL file and the machine file send it",
     );
 }
+
+/// The tool that is in the spindle already is called and changed while it cuts.
+#[test]
+fn no_tool_is_changed_in_the_midst_of_a_cut() {
+    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/20,0,50\nFEDRAT/200,MMPM\nGOTO/20,0,-2\n\
+              GOTO/20,30,-2\nGOTO/-20,30,-2\nRAPID\nGOTO/-20,30,50\nFINI\n";
+    for dialect in ["fanuc", "haas", "linuxcnc", "mazak", "siemens"] {
+        let posted = Posted::new(cl, dialect);
+        let line = posted.text.lines().find(|line| line.contains("Y30.000")).unwrap();
+        let changed = format!("T1 M6\n{line}\n");
+        posted.told(
+            (&format!("{line}\n"), &changed),
+            "error[tool]: the tool is changed in the midst of a cut",
+        );
+    }
+}

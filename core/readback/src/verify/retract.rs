@@ -5,12 +5,12 @@ use std::f64::consts::TAU;
 use post_machine::description::Machine;
 use post_machine::kinematics::Joints;
 
-use super::Verifier;
 use super::report::BlockPlace;
+use super::{RAPID_TURN, Verifier};
 use crate::course::Course;
 
 /// Distance by which the depth axes stand nearer to the part than the machine file retracts them: the axis that lacks
-/// most, and how much, mm; none if all of them are retracted, or stand where it has them for a tool change or at the
+/// most, and how much, mm or radians; none if all of them are retracted, or stand where it has them for a tool change or at the
 /// end. Of a machine with `leave` those are the axes that go behind the way out.
 pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, f64)> {
     let frame = &machine.frame;
@@ -25,6 +25,7 @@ pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(u
         (*place, by)
     });
     let short = lacks.filter(|(place, by)| {
+        let slack = if machine.axes[*place].joint.rotary { RAPID_TURN } else { slack };
         let mut named = named.iter().flat_map(|list| list.iter());
         let there = |(other, value): &(usize, f64)| {
             other == place && libm::fabs(joints[*place] - value) <= slack
@@ -82,8 +83,10 @@ impl<C: Course> Verifier<'_, C> {
         let Some((place, by)) = lacks(self.machine, &joints, self.rapid_bound.point) else {
             return;
         };
-        let name = &self.machine.axes[place].name;
-        let message = format!("{name} stands {by:.3} mm short of its retract {here}");
+        let axis = &self.machine.axes[place];
+        let unit = if axis.joint.rotary { "°" } else { " mm" };
+        let (name, by) = (&axis.name, by / axis.unit());
+        let message = format!("{name} stands {by:.3}{unit} short of its retract {here}");
         self.fault_at("rapid", message, Some(BlockPlace::of_line(line)), None, Some(by));
     }
 }

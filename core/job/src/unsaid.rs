@@ -174,6 +174,8 @@ impl Unsaid<'_> {
     pub fn end(&self) -> Option<Diagnostic> {
         let last_line = self.last_line?;
         let Some(end) = &self.report.end else {
+            // A control without such a word ends with the file.
+            self.spoken.words.iter().find(|word| word.meaning == Meaning::End)?;
             let message = "no word of the program ends it: the control stops there with an alarm, or goes on in what stands behind it";
             let help = "end it by the control's word: M30, M2, or M99 where it is called";
             return Some(

@@ -9,6 +9,7 @@ mod common;
 use std::collections::BTreeMap;
 
 use post_grammar::nc::{NcSyntax, Notation};
+use post_machine::description::FeedLength;
 use post_plugin::{AxisWords, Capabilities, Language, Lengths, Meaning, VocabularyWord};
 
 use crate::g_code::GCode;
@@ -65,6 +66,8 @@ pub struct Lexicon {
     path_modes: bool,
     /// A feed a minute counts along all axes together where no tip is kept.
     all_axes: bool,
+    /// G0 goes at F.
+    rapids_at_feed: bool,
     /// Bits of the modes that the dialect has words for.
     modes: u16,
     /// A cycle returns to a level that the program names.
@@ -83,6 +86,7 @@ impl Lexicon {
             m: vec![0; M_CODES],
             senses: vec![WordMeaning::Unknown],
             syntax: syntax(words, language),
+            rapids_at_feed: false,
             all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
             return_levels: words.iter().any(|word| word.meaning == Meaning::ReturnLevel),
             speed_goes_with_feed: language == Language::Names,
@@ -114,6 +118,16 @@ impl Lexicon {
             }
         }
         lexicon
+    }
+
+    /// Of a control whose G0 goes at F, if `at_feed`.
+    pub fn with_rapids(self, at_feed: bool) -> Self {
+        Self { rapids_at_feed: at_feed, ..self }
+    }
+
+    /// G0 goes at F.
+    pub(crate) fn rapids_at_feed(&self) -> bool {
+        self.rapids_at_feed
     }
 
     /// What the reader of its programs must know.
@@ -157,9 +171,13 @@ impl Lexicon {
         self.changes_by_word
     }
 
-    /// A feed a minute counts along all axes together where no tip is kept, degrees as millimetres.
-    pub(crate) fn counts_all_axes(&self) -> bool {
-        self.all_axes
+    /// The length that a feed a minute counts along where no tip is kept and the machine file says nothing else.
+    pub(crate) fn feed_length(&self) -> FeedLength {
+        match self.writes {
+            _ if self.all_axes => FeedLength::Combined,
+            writes if writes.has(Capabilities::FEED_LONGEST_TURN) => FeedLength::LinearOrLongest,
+            _ => FeedLength::Linear,
+        }
     }
 
     /// Bits of the modes that a program must set itself, as the dialect names them ([`ModalGroup`]).

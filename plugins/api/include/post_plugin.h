@@ -151,7 +151,8 @@ typedef struct {
  * is no G93; `words_len` is that of the setup; `extension` is padded with zeros; `writes` is the sum of
  * POST_WRITES_ of all that the dialect writes beyond straight moves: 0 to begin with. `most_inverse_time` is the
  * largest F under G93, 0 if it has no end. `plane_angles` is POST_PLANE_: how the control is told a tilted plane,
- * with `plane_decimals`. `language` is POST_LANGUAGE_: what programs are read back by, 0 (MACRO) if you do not say. */
+ * with `plane_decimals`. `language` is POST_LANGUAGE_: what programs are read back by, 0 (MACRO) if you do not say.
+ * `rapid_feed` is the feed of rapids where G0 goes at F, program units a minute, 0 if it goes as fast as the axes can. */
 typedef struct {
     uint64_t size;
     uint8_t words[32];
@@ -166,6 +167,7 @@ typedef struct {
     uint32_t plane_decimals;
     uint32_t language;
     uint32_t reserved; /* 0 */
+    double rapid_feed;
 } PostFormat;
 
 /* tip: mm, part frame, minus the chord. axis: rotation vector in degrees, part frame. */

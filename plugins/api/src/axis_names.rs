@@ -16,6 +16,9 @@ impl AxisNames {
     /// X Y Z, the axes that slide beside them and the three that turn: the letters of ISO 841 that every control has.
     pub const ISO: AxisNames = AxisNames { letters: "XYZABCUVW", numbered: false };
 
+    /// Those of a printer's firmware, whose E is what its extruder pushes out.
+    pub const PRINTER: AxisNames = AxisNames { letters: "XYZABCUVWE", numbered: false };
+
     /// Can the control write every axis of the program?
     ///
     /// # Errors

@@ -151,6 +151,9 @@ capabilities! {
     49 SIGN_IS_WAY;
     /// `Pose`: cuts that lead the tool of a robot straight.
     50 POSES;
+    /// Where no linear axis moves, a feed a minute counts along the rotary axis that turns the most, in degrees; else along
+    /// the root of the sum of their squares.
+    51 FEED_LONGEST_TURN;
 }
 
 impl Capabilities {

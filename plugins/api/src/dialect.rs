@@ -63,6 +63,9 @@ pub struct Format {
     /// The largest F that the control takes under inverse time, 1/min; none if it has no end. A block that would need
     /// more is slowed down.
     pub most_inverse_time: Option<f64>,
+    /// The feed at which a rapid goes on a control whose G0 goes at F, program units a minute, as it stands in each of them;
+    /// none where G0 goes as fast as the axes can.
+    pub rapid_feed: Option<f64>,
     /// How the control is told a tilted plane.
     pub plane_angles: PlaneAngles,
     /// Decimals of those angles, degrees.

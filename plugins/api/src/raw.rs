@@ -264,6 +264,8 @@ pub struct PostFormat {
     pub language: u32,
     /// Zero.
     pub reserved: u32,
+    /// The feed of rapids where G0 goes at F, program units a minute; 0 if it goes as fast as the axes can.
+    pub rapid_feed: f64,
 }
 
 /// Host's function that takes a declared option.

@@ -109,6 +109,7 @@ pub(crate) fn judged_format(
         feed_per_revolution: decimals(raw.feed_per_revolution),
         extension: String::from_utf8_lossy(extension).into_owned(),
         most_inverse_time: Some(raw.most_inverse_time).filter(|most| *most != 0.0),
+        rapid_feed: Some(raw.rapid_feed).filter(|feed| *feed != 0.0),
         plane_angles: raw
             .plane()
             .ok_or("its format has angles of a plane that this version does not know")?,
@@ -140,6 +141,9 @@ fn check_format(format: &Format, words: usize) -> Result<(), String> {
     }
     if let Some(most) = format.most_inverse_time.filter(|most| most.is_nan() || *most <= 0.0) {
         return Err(format!("its largest inverse-time feed is {most}"));
+    }
+    if let Some(feed) = format.rapid_feed.filter(|feed| !(feed.is_finite() && *feed > 0.0)) {
+        return Err(format!("its feed of rapids is {feed}"));
     }
     let extension = &format.extension;
     if extension.len() > 16 || !extension.bytes().all(|byte| byte.is_ascii_alphanumeric()) {

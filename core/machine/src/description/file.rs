@@ -432,6 +432,8 @@ words! {
     FeedLength = Linear {
         /// The linear axes alone; the rotary ones, in degrees, where no linear axis moves.
         Linear "linear",
+        /// The linear axes alone; the rotary one that turns the most, in degrees, where no linear axis moves.
+        LinearOrLongest "linear-or-longest",
         /// Root of the sum of squares over all axes, mm and degrees alike.
         Combined "combined",
         /// The longest axis travel, mm and degrees alike.
@@ -593,7 +595,8 @@ keys! {
         /// straight moves what the language has.
         orientation: Option<Orientation>,
         /// The length that the control divides by F when it does not keep the tip; if not said as the dialect has it:
-        /// combined for Brother, Fanuc, Hurco, Mazak, Mitsubishi, Okuma and Syntec, linear for the others.
+        /// combined for Brother, Fanuc, Hurco, Mazak, Mitsubishi, Okuma and Syntec, linear-or-longest for Klipper, linear for
+        /// the others.
         feed_length: Option<FeedLength>,
         /// The length that the control divides by F when it keeps the tip; tip if not said.
         tcp_feed_length: TcpFeedLength,

@@ -31,6 +31,8 @@ pub(super) struct FeedWriter {
     unit: f64,
     feed: DecimalFormat,
     turn: DecimalFormat,
+    /// The feed of rapids, program units a minute, where the control has no other speed for them.
+    rapid: Option<f64>,
     /// None where the machine or the dialect has no feed by time.
     inverse: Option<DecimalFormat>,
 }
@@ -91,9 +93,10 @@ impl FeedWriter {
             return None;
         }
         let tcp = machine.control.tcp;
-        let usual = match writes.has(Capabilities::FEED_ALL_AXES) {
-            true => FeedLength::Combined,
-            false => FeedLength::Linear,
+        let usual = match writes {
+            _ if writes.has(Capabilities::FEED_ALL_AXES) => FeedLength::Combined,
+            _ if writes.has(Capabilities::FEED_LONGEST_TURN) => FeedLength::LinearOrLongest,
+            _ => FeedLength::Linear,
         };
         let length = machine.control.feed_length.unwrap_or(usual);
         Some(Self {
@@ -108,6 +111,7 @@ impl FeedWriter {
             unit: unit_length(machine.control.units),
             feed: DecimalFormat::new(format.feed),
             turn: DecimalFormat::new(format.feed_per_revolution),
+            rapid: format.rapid_feed,
             inverse: match machine.control.feed {
                 FeedMode::PerMinute => None,
                 _ => format.inverse_time.map(|decimals| {
@@ -198,6 +202,11 @@ impl FeedWriter {
         self.per_minute(length / minutes, length)
     }
 
+    /// What a rapid takes at the least where the control has a feed for rapids, minutes.
+    pub(super) fn rapid_minutes(&self, from: &Joints, block: &MotionBlock) -> f64 {
+        self.rapid.map_or(0.0, |feed| self.measured(from, &block.joints, block.way) / feed)
+    }
+
     /// The feed of a way of which only this is known: the tool comes linearly, the rotary axes standing.
     pub(super) fn approach(&self, feed: f64) -> (WrittenFeed, bool) {
         let allowed = feed.min(self.most);
@@ -249,8 +258,11 @@ impl FeedWriter {
             }
             (Tcp::Control, _) if tip > SAME => tip,
             (Tcp::Control, _) => self.degrees.travels(from, to).rotary_longest,
-            (Tcp::Post, FeedLength::Linear) if linear > SAME => linear,
+            (Tcp::Post, FeedLength::Linear | FeedLength::LinearOrLongest) if linear > SAME => {
+                linear
+            }
             (Tcp::Post, FeedLength::Linear) => travels.rotary,
+            (Tcp::Post, FeedLength::LinearOrLongest) => travels.rotary_longest,
             (Tcp::Post, FeedLength::Combined) => {
                 libm::sqrt(linear * linear + travels.rotary * travels.rotary)
             }

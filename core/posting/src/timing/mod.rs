@@ -246,7 +246,7 @@ impl<'a> TimingStage<'a> {
         }
     }
 
-    /// A rapid takes what its slowest axis needs; where its axes would go too fast, or each for itself, it is written
+    /// A rapid takes what its slowest axis needs, or the control's feed of rapids; where its axes would go too fast, or each for itself, it is written
     /// as a feed move, if the machine file says so.
     fn rapid(&mut self, block: &mut MotionBlock) {
         let (least, ..) = self.least(block);
@@ -254,6 +254,8 @@ impl<'a> TimingStage<'a> {
         if self.rapids.is_fed(&self.last, block, least) {
             let written = self.feeds.write(block, &self.last, least);
             self.put(block, written, least);
+        } else {
+            block.time.minutes = least.max(self.feeds.rapid_minutes(&self.last, block));
         }
         self.statistics.other += block.time.minutes;
     }

@@ -28,6 +28,14 @@ impl ControlState {
         }
     }
 
+    /// G92 says where the word stands, if it stands in the block.
+    pub(super) fn set_along(&mut self, words: &mut BlockWords) -> bool {
+        let letter = self.machine.along.as_ref().and_then(|word| word.name.bytes().next());
+        let said = letter.and_then(|letter| words.take(letter));
+        self.along = said.or(self.along);
+        said.is_some()
+    }
+
     #[cold]
     fn take_along(&mut self, words: &mut BlockWords, before: usize) -> Result<(), Box<Diagnostic>> {
         let Some((name, per_way)) =

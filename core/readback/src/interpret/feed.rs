@@ -37,7 +37,7 @@ impl ControlState {
         to: &Stance,
     ) -> MotionTime {
         if kind == MotionKind::Rapid {
-            return MotionTime::even(0.0, self.rapid_minutes(from, to));
+            return MotionTime::even(0.0, self.rapid_minutes(way, from, to));
         }
         let Some(feed) = self.modal.feed.filter(|feed| *feed > 0.0) else {
             return MotionTime::default();
@@ -117,22 +117,25 @@ impl ControlState {
         if way.is_curved() {
             return tip;
         }
-        let usual = match self.lexicon.counts_all_axes() {
-            true => FeedLength::Combined,
-            false => FeedLength::Linear,
-        };
-        match self.machine.control.feed_length.unwrap_or(usual) {
-            FeedLength::Linear if squares > 0.0 => squares.sqrt(),
+        match self.machine.control.feed_length.unwrap_or(self.lexicon.feed_length()) {
+            FeedLength::Linear | FeedLength::LinearOrLongest if squares > 0.0 => squares.sqrt(),
             FeedLength::Linear => turned.sqrt(),
+            FeedLength::LinearOrLongest => longest,
             FeedLength::Combined => (squares + turned).sqrt(),
             FeedLength::Longest => longest,
         }
     }
 
-    /// Minutes of a rapid: its slowest axis at its largest feed; zero where the machine file names none.
+    /// Minutes of a rapid: its slowest axis at its largest feed, zero where the machine file names none; where G0 goes at F
+    /// no less than at that.
     #[inline]
-    fn rapid_minutes(&self, from: &Stance, to: &Stance) -> f64 {
-        let mut minutes: f64 = 0.0;
+    fn rapid_minutes(&self, way: &Interpolation, from: &Stance, to: &Stance) -> f64 {
+        let mut minutes: f64 = match self.modal.feed {
+            Some(feed) if self.lexicon.rapids_at_feed() && feed > 0.0 => {
+                self.feed_length(way, tip_length(way, from, to), from, to) / feed
+            }
+            _ => 0.0,
+        };
         for (place, axis) in self.machine.axes.iter().enumerate() {
             let way = libm::fabs(to.joints[place] - from.joints[place]);
             // Of an axis without a largest feed it is zero.

@@ -91,8 +91,12 @@ fn preset(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<
     if control.frames.plane.is_some() || !control.to_work.upright() {
         return Err(control.refuse("nc-frame", "G92 under a tilted plane or a turn is not run"));
     }
+    let along = control.set_along(words);
     let said = taken(control, words, "G92")?;
     if said.iter().all(Option::is_none) {
+        if along {
+            return Ok(());
+        }
         return Err(control.refuse("nc-frame", "G92 without X, Y or Z"));
     }
     let point = control.point();

@@ -89,9 +89,9 @@ pub fn lexicon(dialect: &str) -> Lexicon {
             words.push(VocabularyWord { word, meaning });
         }
     }
-    assert!(words.len() > 50, "{dialect}");
+    assert!(words.len() > 35, "{dialect}");
     let (language, writes) = match dialect {
-        "linuxcnc" | "grbl" => (Language::Rs274, Capabilities::NONE),
+        "linuxcnc" | "grbl" | "klipper" | "rrf" | "marlin" => (Language::Rs274, Capabilities::NONE),
         "siemens" => (Language::Names, Capabilities::TOOL_EDGES),
         "heidenhain" => (Language::Conversational, Capabilities::TOOL_TABLE),
         _ => (Language::Macro, Capabilities::NONE),

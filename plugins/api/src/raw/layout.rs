@@ -57,7 +57,7 @@ pub const TABLES: &[Layout] = layouts! {
     }
     PostFormat as "PostFormat" {
         size words feed inverse_time feed_per_revolution words_len extension writes most_inverse_time
-        plane_angles plane_decimals language reserved
+        plane_angles plane_decimals language reserved rapid_feed
     }
     PostPlugin as "PostPlugin" {
         magic abi kind size table_size layout name version describe loaded dialect model about

@@ -193,6 +193,7 @@ impl PostFormat {
         plane_decimals: 0,
         language: 0,
         reserved: 0,
+        rapid_feed: 0.0,
     };
 
     /// `format` as it crosses the border; none if it has too many words or too long an extension.
@@ -204,6 +205,7 @@ impl PostFormat {
             words_len: format.words.len() as u32,
             writes: capabilities.bits(),
             most_inverse_time: format.most_inverse_time.unwrap_or(0.0),
+            rapid_feed: format.rapid_feed.unwrap_or(0.0),
             plane_angles: format.plane_angles.code(),
             plane_decimals: format.plane_decimals.into(),
             language: format.language.code(),

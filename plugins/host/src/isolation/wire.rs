@@ -59,7 +59,7 @@ structs! {
     OptionSpec { key kind default help }
     PostFormat {
         size words feed inverse_time feed_per_revolution words_len extension writes most_inverse_time
-        plane_angles plane_decimals language reserved
+        plane_angles plane_decimals language reserved rapid_feed
     }
 }
 

@@ -78,6 +78,8 @@ pub fn needed(name: &str) -> Vec<(String, GivenValue)> {
     let needed = match name {
         // GRBL 1.1 has three.
         "grbl" => ("hal", GivenValue::Flag(true)),
+        // Printers have no spindle.
+        "klipper" | "rrf" | "marlin" => ("mill", GivenValue::Flag(true)),
         // Nothing is written in a unit that nobody has named.
         "okuma" => ("unit_system", GivenValue::Text("1 mm".to_owned())),
         "brother" => ("unit_system", GivenValue::Text("mm".to_owned())),

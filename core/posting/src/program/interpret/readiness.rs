@@ -134,7 +134,7 @@ impl ClInterpreter {
         self.fault(record, "spindle", message.to_owned(), help);
     }
 
-    /// The tool cuts without turning: a knife, or as the user says.
+    /// The tool cuts without turning: a knife, an extruder, or as the user says.
     pub(super) fn need_not_turn(&self) -> bool {
         self.reading.knife || self.reading.spindle == DefaultSpindle::Still
     }

@@ -50,7 +50,7 @@ pub struct ReadingOptions {
     pub rules: Vec<WordRule>,
     /// How it waits for other channels.
     pub wait: Option<WaitRule>,
-    /// The tool has an edge that leads: it cuts without turning.
+    /// The tool has an edge that leads, or is an extruder: it cuts without turning.
     pub knife: bool,
     /// What becomes of `PPRINT`.
     pub print: Print,
@@ -102,7 +102,7 @@ impl ReadingOptions {
         self.tool_length = machine.control.tool_length;
         self.rules.clone_from(&machine.word_rules);
         self.wait.clone_from(&machine.wait);
-        self.knife = machine.edge.is_some();
+        self.knife = machine.edge.is_some() || machine.along.is_some();
         self.print = machine.control.print;
         self.surface_speed = machine.spindle.surface_speed;
         self.nose.clone_from(&machine.nose);

@@ -336,11 +336,11 @@ impl Engine {
             Event::Position { words, feed, plane_first, tool } => {
                 self.position(words, tool, feed, plane_first, out)?
             }
-            Event::Retract { axes, words } => self.leave(axes, words, out),
-            Event::Park { axes, words } => self.machine_positions(axes, words, out),
+            Event::Retract { axes, words } => self.leave(axes, words, out)?,
+            Event::Park { axes, words } => self.machine_positions(axes, words, out)?,
             Event::Dwell { seconds } => self.dwell(seconds, out),
-            Event::Stop => self.stop(codes.stop[0], out),
-            Event::OptionalStop => self.stop(codes.stop[1], out),
+            Event::Stop => self.stop(codes.stop[0], out)?,
+            Event::OptionalStop => self.stop(codes.stop[1], out)?,
             Event::End => self.end(out),
             Event::WorkOffset { number, .. } => self.another_offset(number, out)?,
             Event::Units(units) if self.table.units_inside => {
@@ -514,12 +514,12 @@ impl Engine {
     }
 
     /// The tool leaves the part, and what was in force is cancelled, in the order of the table.
-    fn leave(&mut self, axes: u32, words: &[f64], out: &mut String) {
+    fn leave(&mut self, axes: u32, words: &[f64], out: &mut String) -> Result<(), String> {
         self.motion.settle(out);
         let mut cancelled = false;
         for step in self.table.leave {
             match step {
-                Leave::Retract => self.go_up(axes, words, out),
+                Leave::Retract => self.go_up(axes, words, out)?,
                 Leave::Length => {
                     cancelled = self.length_active.set(false);
                     if cancelled {
@@ -527,7 +527,7 @@ impl Engine {
                     }
                     self.cancel_what_was(out);
                 }
-                Leave::Again if cancelled => self.go_up(axes, words, out),
+                Leave::Again if cancelled => self.go_up(axes, words, out)?,
                 Leave::Again => {}
                 Leave::Tcp => {
                     self.end_kept_plane(out);
@@ -541,24 +541,37 @@ impl Engine {
         self.follows_vector = false;
         self.motion.follow_vector(None);
         self.motion.axes.forget();
+        Ok(())
     }
 
     /// The depth axes to where the tool is clear of the part.
-    fn go_up(&mut self, axes: u32, words: &[f64], out: &mut String) {
+    fn go_up(&mut self, axes: u32, words: &[f64], out: &mut String) -> Result<(), String> {
         if self.retract.is_empty() {
-            self.machine_positions(axes, words, out);
-            return;
+            return self.machine_positions(axes, words, out);
         }
         self.motion.line(&self.retract, out);
         if counts_on(&self.retract) {
             self.motion.line("G90", out);
         }
         self.motion.moved_by_line();
+        Ok(())
     }
 
     /// Axes at rapid to positions in machine coordinates.
-    fn machine_positions(&mut self, axes: u32, words: &[f64], out: &mut String) {
+    fn machine_positions(
+        &mut self,
+        axes: u32,
+        words: &[f64],
+        out: &mut String,
+    ) -> Result<(), String> {
         let Table { machine, machine_off, .. } = *self.table;
+        if machine.is_empty() && axes != 0 {
+            return Err(
+                "this control has no words for positions in machine coordinates: [control] retract = {} retracts nothing, \
+                 the option `retract` is a way out in lines of your own"
+                    .to_owned(),
+            );
+        }
         match machine_off {
             "" => self.motion.machine(machine, axes, words, out),
             off if axes != 0 => {
@@ -568,6 +581,7 @@ impl Engine {
             }
             _ => {}
         }
+        Ok(())
     }
 
     fn end(&mut self, out: &mut String) {

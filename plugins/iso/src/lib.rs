@@ -11,6 +11,7 @@ mod lines;
 mod motion;
 pub mod options;
 mod planes;
+mod printer;
 mod settings;
 mod splines;
 mod table;
@@ -23,6 +24,7 @@ use post_plugin::{
 
 pub use engine::Engine;
 pub use motion::{ArcWords, FeedDecimals, MotionWriter};
+pub use printer::Printer;
 pub use splines::SplineWords;
 pub use table::{
     CYCLES, CycleAddresses, CycleCode, CycleReturn, Dwell, Leave, Length, MotionCodes, Offset,

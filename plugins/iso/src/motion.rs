@@ -24,6 +24,10 @@ pub struct MotionWriter {
     pub(crate) style: NumberStyle,
     decimals: FeedDecimals,
     motion: Modal<&'static str>,
+    /// The word of motion is never left out.
+    every_block: bool,
+    /// F of rapids, where they go at one.
+    rapid_feed: Option<f64>,
     feed_mode: Modal<&'static str>,
     feed: Modal<f64>,
     pending: Option<Compensation>,
@@ -92,6 +96,8 @@ impl MotionWriter {
             style,
             decimals,
             motion: Modal::default(),
+            every_block: false,
+            rapid_feed: None,
             feed_mode: Modal::default(),
             feed: Modal::default(),
             pending: None,
@@ -113,8 +119,14 @@ impl MotionWriter {
             inverse_time: (!self.codes.feed[1].is_empty()).then_some(self.decimals.inverse_time),
             feed_per_revolution: self.decimals.per_revolution,
             extension: extension.to_owned(),
+            rapid_feed: self.rapid_feed,
             ..Format::default()
         }
+    }
+
+    /// The word of motion stands in every block that moves, if `every_block`; rapids go at `feed`.
+    pub(crate) fn in_full(self, every_block: bool, feed: Option<f64>) -> Self {
+        MotionWriter { every_block, rapid_feed: feed, ..self }
     }
 
     /// Nothing is known to be in force any more (a line of the user's own was written).
@@ -178,7 +190,7 @@ impl MotionWriter {
     /// Does the control have a word for this kind of feed?
     #[inline]
     pub fn has(&self, feed: Feed) -> bool {
-        !self.feed_word(feed).is_empty()
+        matches!(feed, Feed::PerMinute(_)) || !self.feed_word(feed).is_empty()
     }
 
     #[inline]
@@ -215,9 +227,26 @@ impl MotionWriter {
             self.motion(self.codes.motion[0]);
             self.write_pending();
             self.axes.write(&mut self.block, words);
+            self.rapid_feed();
             self.block.end(out);
         }
         self.stands(words);
+    }
+
+    /// Adds the F of a rapid, where it goes at one; that of cuts is to be said again.
+    fn rapid_feed(&mut self) {
+        if let Some(feed) = self.rapid_feed {
+            self.block.number("F", feed, self.decimals.per_minute, FEED_STYLE);
+            self.feed.forget();
+        }
+    }
+
+    /// Adds `feed`, or that of a rapid.
+    fn feed_or_rapid(&mut self, feed: Option<Feed>) {
+        match feed {
+            Some(feed) => self.feed(feed),
+            None => self.rapid_feed(),
+        }
     }
 
     /// Decimals of the words X, Y and Z.
@@ -291,9 +320,7 @@ impl MotionWriter {
                 self.axes.write_group(&mut self.block, words, group);
             }
             self.write_vector(axis);
-            if let Some(feed) = feed {
-                self.feed(feed);
-            }
+            self.feed_or_rapid(feed);
             self.block.end(out);
         }
         self.stands(words);
@@ -363,6 +390,7 @@ impl MotionWriter {
         if let Some(axis) = axis {
             self.write_vector(axis);
         }
+        self.rapid_feed();
         self.block.end(out);
     }
 
@@ -388,9 +416,7 @@ impl MotionWriter {
         if let Some(axis) = axis {
             self.write_vector(axis);
         }
-        if let Some(feed) = feed {
-            self.feed(feed);
-        }
+        self.feed_or_rapid(feed);
         self.block.end(out);
         self.stands(words);
     }
@@ -400,6 +426,7 @@ impl MotionWriter {
         if axes != 0 {
             self.block.word(front);
             self.axes.write_machine(&mut self.block, axes, words);
+            self.rapid_feed();
             self.block.end(out);
             self.motion.forget();
             self.at.clear();
@@ -456,13 +483,14 @@ impl MotionWriter {
         if self.axes.moved_group(words, group) {
             self.motion(self.codes.motion[0]);
             self.axes.write_group(&mut self.block, words, group);
+            self.rapid_feed();
             self.block.end(out);
         }
     }
 
-    /// Adds the word of a kind of motion, unless it is in force.
+    /// Adds the word of a kind of motion, unless it is in force and may be left out.
     pub fn motion(&mut self, word: &'static str) {
-        if self.motion.set(word) {
+        if self.motion.set(word) || self.every_block {
             self.block.word(word);
         }
     }
@@ -471,7 +499,9 @@ impl MotionWriter {
     pub fn feed_mode(&mut self, feed: Feed) {
         let word = self.feed_word(feed);
         if self.feed_mode.set(word) {
-            self.block.word(word);
+            if !word.is_empty() {
+                self.block.word(word);
+            }
             self.feed.forget();
         }
     }

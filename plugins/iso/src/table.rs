@@ -44,6 +44,10 @@ pub struct Table {
     /// A feed a minute without tool centre point control counts along all axes together, degrees as millimetres; else
     /// along the linear ones.
     pub feed_all_axes: bool,
+    /// G0 goes at F: each rapid has that of the option `travel_feed`, and the next cut its own again.
+    pub rapids_at_feed: bool,
+    /// The word of motion stands in every block that moves: one that begins with an axis is no block.
+    pub motion_in_every_block: bool,
     /// The sign of the word of an endless rotary axis can be its way.
     pub sign_is_way: bool,
     /// Largest block number; past it they begin anew.
@@ -62,7 +66,7 @@ pub struct Table {
     /// rapid, in a block of its own.
     pub tcp_at_rapid: bool,
     /// In front of positions in machine coordinates, at rapid: `G53 G0`. A block of its own ahead of them where
-    /// `machine_off` ends them: `#MCS ON`.
+    /// `machine_off` ends them: `#MCS ON`. Empty where the control has none: the user says how the tool leaves.
     pub machine: &'static str,
     /// A block behind positions in machine coordinates that ends them; empty where they hold for their block alone.
     pub machine_off: &'static str,
@@ -105,13 +109,14 @@ pub struct Table {
     pub probe: &'static str,
     /// Calls of subprograms.
     pub subprogram: Subprogram,
-    /// Spindle clockwise, counter-clockwise, off, oriented; empty where the control has none.
+    /// Spindle clockwise, counter-clockwise, off, oriented; empty where the control has none: a spindle that is to turn is
+    /// refused.
     pub spindle: [&'static str; 4],
     /// M codes of coolant off, flood, mist, through the tool, air; empty where they are the machine builder's.
     /// Options `coolant_off`, `coolant_flood`, `coolant_mist`, `coolant_through`, `coolant_air`; `coolant_mist_off`,
     /// `coolant_through_off`, `coolant_air_off` where a kind has an end of its own.
     pub coolant: [&'static str; 5],
-    /// Ends the program.
+    /// Ends the program; empty where it ends with the file.
     pub end: &'static str,
     /// It has coordinates of its own on faces or mantles (polar or cylinder interpolation), which a machine file may name.
     pub interpolates: bool,
@@ -131,13 +136,14 @@ pub struct MotionCodes {
     pub arc: [&'static str; 2],
     /// Planes of X and Y, Z and X, Y and Z.
     pub planes: [&'static str; 3],
-    /// Feed a minute, inverse time, feed a revolution; empty where the control has none.
+    /// Feed a minute, inverse time, feed a revolution; empty where the control has none. Without a word the feed a minute is
+    /// the only one.
     pub feed: [&'static str; 3],
     /// Compensation off, left, right; the last two empty where the control has none.
     pub compensation: [&'static str; 3],
     /// Address of the compensation's register; empty where the control knows the radius by itself.
     pub radius: &'static str,
-    /// Unconditional and optional stop.
+    /// Unconditional and optional stop; empty where the control has none.
     pub stop: [&'static str; 2],
 }
 
@@ -460,6 +466,8 @@ impl Table {
         cancel: "",
         cancel_behind_length: false,
         feed_all_axes: false,
+        rapids_at_feed: false,
+        motion_in_every_block: false,
         sign_is_way: false,
         largest_number: 99_999,
         trim: false,

@@ -49,7 +49,8 @@ impl Engine {
         let [coolant_codes, coolant_ends] = coolant_words(table, setup);
         Ok(Engine {
             table,
-            motion: MotionWriter::new(setup, codes, block, axes, style, feeds),
+            motion: MotionWriter::new(setup, codes, block, axes, style, feeds)
+                .in_full(table.motion_in_every_block, travel_feed(table, setup)),
             style: BlockStyle {
                 spaces: flag(setup, "spaces", true),
                 leading_zeros: flag(setup, "leading_zeros", false),
@@ -106,6 +107,11 @@ fn cancel(table: &Table, setup: &Setup<'_>) -> String {
     }
 }
 
+/// The F of rapids, where the control has no other speed for them.
+fn travel_feed(table: &Table, setup: &Setup<'_>) -> Option<f64> {
+    table.rapids_at_feed.then(|| setup.number("travel_feed"))
+}
+
 /// Decimals of feeds; an inch has one more.
 fn feed_decimals(table: &Table, setup: &Setup<'_>) -> FeedDecimals {
     let inch = setup.units == Units::Inch;
@@ -142,7 +148,8 @@ fn numbering(table: &Table, setup: &Setup<'_>) -> (Block, Option<[u32; 2]>) {
 
 /// The work offset of the options, if the control has it.
 fn work_offset(table: &Table, setup: &Setup<'_>) -> Result<String, String> {
-    let offset = text(setup, "work_offset", "G54");
+    let first = (table.offset.word)(1).unwrap_or_default();
+    let offset = text(setup, "work_offset", &first);
     if !(table.offset.known)(&offset) {
         let range = table.offset.range;
         return Err(format!("the work offset is `{offset}`, must be {range}"));

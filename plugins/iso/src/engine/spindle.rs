@@ -38,6 +38,9 @@ impl Engine {
                 return Err("this dialect has no words for an oriented stop".to_owned());
             }
             Spindle::Orient => self.line(orient, out),
+            Spindle::On { .. } if clockwise.is_empty() => {
+                return Err("this control has no words for a spindle".to_owned());
+            }
             Spindle::On { rpm, sense } => {
                 let block = &mut self.motion.block;
                 block.number("S", rpm, 0, NumberStyle::default());
@@ -92,10 +95,14 @@ impl Engine {
     }
 
     /// A stop; what it has switched off is on again once the tool needs it.
-    pub(super) fn stop(&mut self, word: &str, out: &mut String) {
+    pub(super) fn stop(&mut self, word: &str, out: &mut String) -> Result<(), String> {
+        if word.is_empty() {
+            return Err("this control has no word for such a stop".to_owned());
+        }
         self.line(word, out);
         let stops = self.table.stops;
         self.standstill.stop(stops.spindle, stops.coolant);
+        Ok(())
     }
 
     /// Ahead of `event`: what a stop has switched off, if the tool needs it now.

@@ -13,7 +13,7 @@ impl MotionWriter {
     /// A cut at such a feed writes nothing but words that change and its number.
     pub(crate) fn carries_on(&self, feed: Feed) -> bool {
         let word = self.feed_word(feed);
-        !word.is_empty()
+        self.has(feed)
             && self.motion.is(self.codes.motion[1])
             && self.feed_mode.is(word)
             && self.pending.is_none()
@@ -27,7 +27,8 @@ impl MotionWriter {
             Feed::InverseTime(_) => (self.decimals.inverse_time, true),
             Feed::PerRevolution(_) => (self.decimals.per_revolution, false),
         };
-        let line = CutLine { head: "", decimals, style: FEED_STYLE, every_feed };
+        let head = if self.every_block { self.codes.motion[1] } else { "" };
+        let line = CutLine { head, decimals, style: FEED_STYLE, every_feed };
         self.axes.write_cuts(run, from, &line, &mut self.block, &mut self.feed, out);
         self.at.clear();
         self.at.extend(run.end());

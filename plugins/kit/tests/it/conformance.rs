@@ -31,6 +31,8 @@ fn the_stock_plugins_are_good() {
     let plain = post_stock::plugins().iter().map(|plugin| match plugin.name() {
         // GRBL 1.1 has three axes.
         "grbl" => run(*plugin, &[("hal", GivenValue::Flag(true))]),
+        // Printers have no spindle.
+        "klipper" | "rrf" | "marlin" => run(*plugin, &[("mill", GivenValue::Flag(true))]),
         // Nothing is written in a unit that nobody has named.
         "okuma" => run(*plugin, &[("unit_system", GivenValue::Text("1 mm".to_owned()))]),
         "brother" => run(*plugin, &[("unit_system", GivenValue::Text("mm".to_owned()))]),

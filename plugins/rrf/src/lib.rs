@@ -1,0 +1,97 @@
+//! RepRapFirmware (Duet) as it runs printers, in the mode of M451.
+//!
+//! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
+
+use post_iso::{Control, Engine, Iso, MotionCodes, Offset, Printer, Table, offset_of_six, options};
+use post_plugin::{
+    Capabilities, Event, Meaning, OptionSpec, Setup, VocabularyWord, export_dialect,
+};
+
+struct RepRapFirmware {
+    printer: Printer,
+}
+
+impl Control for RepRapFirmware {
+    const LEAVES_CUTS: bool = true;
+
+    const TABLE: &'static Table = &Table {
+        options: OPTIONS,
+        codes: MotionCodes { stop: ["M226", "M1"], ..Table::PRINTER.codes },
+        relies: RELIES,
+        offset: Offset {
+            known: |text| {
+                (Table::ISO.offset.known)(text) || matches!(text, "G59.1" | "G59.2" | "G59.3")
+            },
+            range: "G54 to G59 or G59.1 to G59.3",
+            word: |number| match number {
+                7..=9 => Some(format!("G59.{}", number - 6)),
+                _ => offset_of_six(number),
+            },
+            at_start: false,
+        },
+        machine: "G53 G0",
+        words: &[OWN, Table::PRINTER.words[0]],
+        ..Table::PRINTER
+    };
+
+    fn table(setup: &Setup<'_>) -> &'static Table {
+        if setup.flag("mill") { MILL } else { Self::TABLE }
+    }
+
+    fn open(setup: &Setup<'_>) -> Result<Self, String> {
+        Ok(RepRapFirmware { printer: Printer::open(setup, None)? })
+    }
+
+    fn begin(&self, engine: &mut Engine, out: &mut String) {
+        self.printer.begin(engine, out);
+    }
+
+    fn write(
+        &mut self,
+        event: &Event<'_>,
+        engine: &mut Engine,
+        out: &mut String,
+    ) -> Result<bool, String> {
+        Ok(Printer::write(event, engine, out))
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Printer::LENGTHS
+    }
+
+    fn vocabulary(&self, engine: Vec<VocabularyWord>) -> Vec<VocabularyWord> {
+        self.printer.vocabulary(engine)
+    }
+}
+
+const OPTIONS: &[OptionSpec] = &[
+    Printer::TRAVEL_FEED,
+    Printer::MILL,
+    OptionSpec::text("work_offset", "G54", "G54 to G59, or G59.1 to G59.3."),
+    options::decimals(3),
+    options::rotary_decimals(3),
+    options::WORD_DECIMALS,
+    options::TRAILING_ZEROS,
+    options::feed_decimals(3),
+    options::RETRACT,
+    options::PARAMETERS,
+];
+
+const RELIES: &[&str] = &[
+    "M451: the machine is a printer, whose G0 goes at F",
+    "each rotary axis is made by M584 with R1, so that F does not count it beside linear axes",
+    "M203 I is no more than the least F: it is 30 mm/min where config.g does not say it",
+];
+
+/// Words that it reads and that are not written here. M0 and M2 end the job.
+const OWN: &[(&str, Meaning)] =
+    &[("G10", Meaning::TableData), ("G4 S", Meaning::DwellSeconds), ("M116", Meaning::Nothing)];
+
+/// Of a machine with a spindle.
+const MILL: &Table = &Table {
+    spindle: Printer::SPINDLE,
+    coolant: Printer::COOLANT,
+    ..*<RepRapFirmware as Control>::TABLE
+};
+
+export_dialect!(rrf, Iso<RepRapFirmware>);

@@ -193,6 +193,9 @@ fn each_dialect_names_the_job_so_that_it_is_found() {
         let option = match dialect {
             "okuma" => "set.control.okuma.unit_system = \"1 mm\"\nset.control.retract.Z = 0\n",
             "brother" => "set.control.brother.unit_system = \"mm\"\n",
+            "rrf" => "set.control.rrf.mill = true\n",
+            "klipper" => "set.control.klipper.mill = true\nset.control.retract = {}\n",
+            "marlin" => "set.control.marlin.mill = true\nset.control.retract = {}\n",
             _ => "",
         };
         let text = format!(

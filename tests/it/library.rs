@@ -66,6 +66,7 @@ pub const LIBRARY: &[Row] = &[
     row("nutating-table", "apt", 100.0, "out-of-reach"),
     row("osp-mill", "ncl", 100.0, "out-of-reach"),
     row("pocketnc", "apt", 60.0, "over-travel"),
+    row("printer-open5x", "ncl", 0.0, "over-travel"),
     row("quill-mill", "cls", 200.0, "out-of-reach"),
     row("ram-fork", "apt", 100.0, "over-travel"),
     row("router", "ncl", 60.0, "out-of-reach"),

@@ -67,6 +67,7 @@ mod predict;
 mod predict_measured;
 mod predict_numbers;
 mod predict_told;
+mod printers;
 mod program_text;
 mod random_links;
 mod rapids;

@@ -183,6 +183,7 @@ fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
         // What a machine file must name.
         let named: &[&str] = match name.as_str() {
             "grbl" => &["--option", "hal=true"],
+            "klipper" | "rrf" | "marlin" => &["--option", "mill=true"],
             "okuma" => &["--option", "unit_system=1 mm"],
             "brother" => &["--option", "unit_system=mm"],
             "mitsubishi" => &["--option", "tapping=rigid"],

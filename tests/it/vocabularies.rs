@@ -97,6 +97,7 @@ fn of_dialect<T>(dialect: &str, told: impl FnOnce(&mut OpenedDialect) -> T) -> T
     let text = |text: &str| GivenValue::Text(text.to_owned());
     let options: &[(&str, GivenValue)] = match dialect {
         "grbl" => &[("hal", GivenValue::Flag(true))],
+        "klipper" | "rrf" | "marlin" => &[("mill", GivenValue::Flag(true))],
         "okuma" => &[
             ("unit_system", text("1 mm")),
             ("tcp_on", text("G169 HL={h}")),
@@ -110,7 +111,7 @@ fn of_dialect<T>(dialect: &str, told: impl FnOnce(&mut OpenedDialect) -> T) -> T
     let setup = ProgramSetup {
         words: ["X", "Y", "Z", "A", "C"].map(word).to_vec(),
         options: options.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect(),
-        tcp: dialect != "grbl",
+        tcp: !matches!(dialect, "grbl" | "klipper" | "rrf" | "marlin"),
         ..ProgramSetup::default()
     };
     told(&mut plugin.dialect(&setup).unwrap())

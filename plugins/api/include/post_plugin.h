@@ -425,6 +425,9 @@ typedef struct {
 #define POST_WRITES_SIGN_IS_WAY 0x0002000000000000u
 /* Pose: cuts that lead the tool of a robot straight. */
 #define POST_WRITES_POSES 0x0004000000000000u
+/* Where no linear axis moves, a feed a minute counts along the rotary axis that turns the most, in degrees; else
+ * along the root of the sum of their squares. */
+#define POST_WRITES_FEED_LONGEST_TURN 0x0008000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

@@ -267,7 +267,7 @@ POST_ASSERT(offsetof(PostSetup, largest) == 168, "PostSetup.largest");
 POST_ASSERT(offsetof(PostSetup, time) == 192, "PostSetup.time");
 POST_ASSERT(offsetof(PostSetup, turns_part) == 200, "PostSetup.turns_part");
 POST_ASSERT(offsetof(PostSetup, diameters) == 204, "PostSetup.diameters");
-POST_ASSERT(sizeof(PostFormat) == 104 && POST_ALIGN(PostFormat) == 8, "PostFormat");
+POST_ASSERT(sizeof(PostFormat) == 112 && POST_ALIGN(PostFormat) == 8, "PostFormat");
 POST_ASSERT(offsetof(PostFormat, size) == 0, "PostFormat.size");
 POST_ASSERT(offsetof(PostFormat, words) == 8, "PostFormat.words");
 POST_ASSERT(offsetof(PostFormat, feed) == 40, "PostFormat.feed");
@@ -281,6 +281,7 @@ POST_ASSERT(offsetof(PostFormat, plane_angles) == 88, "PostFormat.plane_angles")
 POST_ASSERT(offsetof(PostFormat, plane_decimals) == 92, "PostFormat.plane_decimals");
 POST_ASSERT(offsetof(PostFormat, language) == 96, "PostFormat.language");
 POST_ASSERT(offsetof(PostFormat, reserved) == 100, "PostFormat.reserved");
+POST_ASSERT(offsetof(PostFormat, rapid_feed) == 104, "PostFormat.rapid_feed");
 POST_ASSERT(sizeof(PostPlugin) == 112 && POST_ALIGN(PostPlugin) == 8, "PostPlugin");
 POST_ASSERT(offsetof(PostPlugin, magic) == 0, "PostPlugin.magic");
 POST_ASSERT(offsetof(PostPlugin, abi) == 8, "PostPlugin.abi");

@@ -16,7 +16,7 @@ impl Control for RepRapFirmware {
 
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
-        codes: MotionCodes { stop: ["M226", "M1"], ..Table::PRINTER.codes },
+        codes: MotionCodes { stop: ["M226", ""], ..Table::PRINTER.codes },
         relies: RELIES,
         offset: Offset {
             known: |text| {

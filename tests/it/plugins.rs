@@ -183,7 +183,8 @@ fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
         // What a machine file must name.
         let named: &[&str] = match name.as_str() {
             "grbl" => &["--option", "hal=true"],
-            "klipper" | "rrf" | "marlin" => &["--option", "mill=true"],
+            "rrf" => &["--option", "mill=true"],
+            "klipper" | "marlin" => &["--option", "mill=true", "--option", "retract=G0 Z100 F6000"],
             "okuma" => &["--option", "unit_system=1 mm"],
             "brother" => &["--option", "unit_system=mm"],
             "mitsubishi" => &["--option", "tapping=rigid"],

@@ -28,6 +28,8 @@ struct Firmware {
     name: &'static str,
     /// Commands beside G0 and G1.
     reads: &'static [&'static str],
+    /// The least speed of a move, mm/min.
+    least: f64,
     /// The length of F where X, Y and Z stand: of U, V and E.
     turned: fn([f64; 3]) -> f64,
 }
@@ -36,16 +38,20 @@ const FIRMWARE: [Firmware; 3] = [
     Firmware {
         name: "klipper",
         reads: &["G21", "G90", "G92", "M82", "M104", "M109", "M140", "M190"],
+        least: 0.0,
         turned: |others| others.into_iter().map(f64::abs).fold(0.0, f64::max),
     },
     Firmware {
         name: "rrf",
         reads: &["G21", "G90", "G92", "G54", "M82", "M104", "M109", "M140", "M190"],
+        // What config.g must have: M203 I0.6.
+        least: 0.6,
         turned: |[u, v, _]| u.hypot(v),
     },
     Firmware {
         name: "marlin",
         reads: &["G21", "G90", "G92", "M82", "M104", "M109", "M140", "M190"],
+        least: 0.0,
         turned: |[u, v, _]| u.hypot(v),
     },
 ];
@@ -113,7 +119,7 @@ fn runs(firmware: &Firmware, text: &str) -> Vec<Move> {
         let linear = ["X", "Y", "Z"].map(way).iter().map(|way| way * way).sum::<f64>().sqrt();
         let length =
             if linear > 1e-9 { linear } else { (firmware.turned)(["U", "V", "E"].map(way)) };
-        let minutes = length / feed;
+        let minutes = length / feed.max(firmware.least);
         let between = |share: f64| {
             let part = |(name, start): (&&'static str, &f64)| (*name, start + share * way(name));
             nozzle(&from.iter().map(part).collect())

@@ -91,7 +91,7 @@ pub(crate) fn retract_not_said(machine: &Machine, writes: Capabilities) -> Optio
             ),
         )
         .help(format!(
-            "[control] retract = {{ {} = … }} with the position as the control shows it (Okuma: from the zero of G16 H0; GRBL: minus the pull-off, or lower), or [control.{}] retract with a block of its own",
+            "[control] retract = {{ {} = … }} with the position as the control shows it (Okuma: from the zero of G16 H0; GRBL: minus the pull-off, or lower), {{}} where nothing is to retract (Klipper, Marlin: they have no machine coordinates), or [control.{}] retract with a block of its own",
             axis.name, machine.control.dialect
         )),
     )

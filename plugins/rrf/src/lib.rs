@@ -80,7 +80,7 @@ const OPTIONS: &[OptionSpec] = &[
 const RELIES: &[&str] = &[
     "M451: the machine is a printer, whose G0 goes at F",
     "each rotary axis is made by M584 with R1, so that F does not count it beside linear axes",
-    "M203 I is no more than the least F: it is 30 mm/min where config.g does not say it",
+    "config.g has M203 I0.6: without it no move is slower than 30 mm/min, and beads come too fast",
 ];
 
 /// Words that it reads and that are not written here. M0 and M2 end the job.

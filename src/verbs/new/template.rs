@@ -568,6 +568,9 @@ fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     {
         line(&format!("retract = {{ Z = {} }}", top - below), remark);
     }
+    if matches!(choices.dialect.as_str(), "klipper" | "marlin") {
+        line("retract = {}", "nothing retracts: there are no machine coordinates");
+    }
     let options = options(choices);
     if !options.is_empty() {
         line("", "");
@@ -600,6 +603,9 @@ fn options(choices: &Choices) -> Vec<(&'static str, &'static str)> {
         }
         "grbl" if choices.class.turns() => {
             vec![("hal = true", "grblHAL: GRBL 1.1 has X, Y and Z alone")]
+        }
+        "klipper" | "rrf" | "marlin" => {
+            vec![("mill = true", "M3, M4, M5 are words of the build or macros; a printer has none")]
         }
         _ => Vec::new(),
     }

@@ -85,5 +85,10 @@ pub fn needed(name: &str) -> Vec<(String, GivenValue)> {
         "brother" => ("unit_system", GivenValue::Text("mm".to_owned())),
         _ => return Vec::new(),
     };
-    vec![(needed.0.to_owned(), needed.1)]
+    let mut needed = vec![(needed.0.to_owned(), needed.1)];
+    if matches!(name, "klipper" | "marlin") {
+        // Nor have these machine coordinates.
+        needed.push(("retract".to_owned(), GivenValue::Text("G0 Z100 F6000".to_owned())));
+    }
+    needed
 }

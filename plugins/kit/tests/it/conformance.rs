@@ -32,7 +32,12 @@ fn the_stock_plugins_are_good() {
         // GRBL 1.1 has three axes.
         "grbl" => run(*plugin, &[("hal", GivenValue::Flag(true))]),
         // Printers have no spindle.
-        "klipper" | "rrf" | "marlin" => run(*plugin, &[("mill", GivenValue::Flag(true))]),
+        "rrf" => run(*plugin, &[("mill", GivenValue::Flag(true))]),
+        // Nor have these machine coordinates.
+        "klipper" | "marlin" => {
+            let up = GivenValue::Text("G0 Z100 F6000".to_owned());
+            run(*plugin, &[("mill", GivenValue::Flag(true)), ("retract", up)])
+        }
         // Nothing is written in a unit that nobody has named.
         "okuma" => run(*plugin, &[("unit_system", GivenValue::Text("1 mm".to_owned()))]),
         "brother" => run(*plugin, &[("unit_system", GivenValue::Text("mm".to_owned()))]),

@@ -201,6 +201,7 @@ impl<'a> Post<'a> {
             .or_else(|| refusal::depth_counts_down(machine))
             .or_else(|| refusal::no_way_off(machine))
             .or_else(|| refusal::retract_not_said(machine, dialect.capabilities()))
+            .or_else(|| refusal::no_park(machine, dialect.capabilities()))
             .or_else(|| refusal::no_smoothing(machine, dialect.capabilities()))
             .or_else(|| refusal::no_instead(machine, dialect.capabilities()))
             .or_else(|| refusal::no_word_letter(machine, dialect.capabilities()))

@@ -97,6 +97,22 @@ pub(crate) fn retract_not_said(machine: &Machine, writes: Capabilities) -> Optio
     )
 }
 
+/// A control without machine coordinates is sent to no position of theirs.
+pub(crate) fn no_park(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
+    let frame = &machine.frame;
+    let keys = [("change", &frame.change), ("park", &frame.park)];
+    let (key, _) = keys.iter().find(|(_, stands)| !stands.is_empty())?;
+    writes.has(Capabilities::NO_PARK).then(|| {
+        let dialect = &machine.control.dialect;
+        let message = format!(
+            "[control] {key}: the dialect {dialect} has no words for positions in machine coordinates"
+        );
+        Diagnostic::error("dialect", message).help(format!(
+            "{key} = {{}}, and a move there by a line of the machine file's own ([control.{dialect}] retract, [program])"
+        ))
+    })
+}
+
 /// Why a point has no axis values.
 pub(crate) fn refused(machine: &Machine, refused: &PlacementError) -> Diagnostic {
     match *refused {

@@ -154,6 +154,8 @@ capabilities! {
     /// Where no linear axis moves, a feed a minute counts along the rotary axis that turns the most, in degrees; else along
     /// the root of the sum of their squares.
     51 FEED_LONGEST_TURN;
+    /// `Park` does not come: the control has no words for positions in machine coordinates.
+    52 NO_PARK;
 }
 
 impl Capabilities {

@@ -36,7 +36,10 @@ impl Control for Klipper {
     }
 
     fn capabilities(&self) -> Capabilities {
-        Printer::LENGTHS | self.printer.retract() | Capabilities::FEED_LONGEST_TURN
+        Printer::LENGTHS
+            | Capabilities::NO_PARK
+            | self.printer.retract()
+            | Capabilities::FEED_LONGEST_TURN
     }
 
     fn vocabulary(&self, engine: Vec<VocabularyWord>) -> Vec<VocabularyWord> {

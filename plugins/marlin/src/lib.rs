@@ -41,7 +41,7 @@ impl Control for Marlin {
     }
 
     fn capabilities(&self) -> Capabilities {
-        Printer::LENGTHS | self.printer.retract()
+        Printer::LENGTHS | Capabilities::NO_PARK | self.printer.retract()
     }
 
     fn vocabulary(&self, engine: Vec<VocabularyWord>) -> Vec<VocabularyWord> {

@@ -280,6 +280,10 @@ fn program(
     case: &mut Case,
 ) -> Result<Option<String>, PluginFault> {
     let positions = positions(format);
+    let opened = Pen { plugin, setup, left_out: &[] };
+    if opened.open()?.capabilities().has(Capabilities::NO_PARK) {
+        left_out.push("Park");
+    }
     loop {
         let events = events(&positions, left_out);
         let pen = Pen { plugin, setup, left_out };

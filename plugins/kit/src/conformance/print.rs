@@ -114,6 +114,9 @@ const DIRECTION: f64 = 0.01;
 pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     let format = pen.open()?.format().clone();
     for kind in MoveKind::all(&format) {
+        if pen.leaves_out(&kind.event(&[], 0.0)) {
+            continue;
+        }
         if let Err(fault) = alone(pen, &format, kind)? {
             case.wrong(format!("{} is refused: {fault}", kind.name()));
             continue;

@@ -4,7 +4,8 @@
 
 use post_host::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
 use post_plugin::{
-    Coolant, DialectSession as _, Event, Format, Lengths, Meaning, Spindle, Units, WriteFault,
+    Capabilities, Coolant, DialectSession as _, Event, Format, Lengths, Meaning, Spindle, Units,
+    WriteFault,
 };
 
 use super::Case;

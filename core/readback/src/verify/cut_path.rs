@@ -156,36 +156,19 @@ impl CutPath {
         self.places().distance(point)
     }
 
-    /// The least distance on a straight way, as far as it is less than `least`, to within a cell, mm.
+    /// The least distance on a straight way, as far as it is less than `least`, mm.
     pub(super) fn least_on(&mut self, from: Vector3<f64>, to: Vector3<f64>, least: f64) -> f64 {
+        let way = to - from;
+        let length = way.norm();
+        let (mut gone, mut found) = (0.0, f64::INFINITY);
         let places = self.places();
-        let ends = [from, to].map(|place| WayPlace { place, distance: places.distance(place) });
-        let mut found = ends[0].distance.min(ends[1].distance);
-        least_between(places, ends, least, &mut found);
+        while gone <= length {
+            let share = if length > 0.0 { gone / length } else { 0.0 };
+            let distance = places.distance(from + way * share);
+            found = found.min(distance);
+            // Nothing this far on can be as near as that.
+            gone += (distance - least.min(found)).max(2.0 * places.cell());
+        }
         found
-    }
-}
-
-/// A place on a way, and how far it is from the nearest that is kept, mm.
-#[derive(Clone, Copy)]
-struct WayPlace {
-    place: Vector3<f64>,
-    distance: f64,
-}
-
-/// Takes into `found` what is nearer between two places: a distance changes by no more than the way there.
-fn least_between(places: &Octree, ends: [WayPlace; 2], least: f64, found: &mut f64) {
-    let way = (ends[1].place - ends[0].place).norm();
-    let bound = 0.5 * (ends[0].distance + ends[1].distance - way);
-    let short = way <= 2.0 * places.cell() || !way.is_finite();
-    if short || bound >= found.min(least) - 0.5 * places.cell() {
-        return;
-    }
-    let place = 0.5 * (ends[0].place + ends[1].place);
-    let middle = WayPlace { place, distance: places.distance(place) };
-    *found = found.min(middle.distance);
-    let nearer = usize::from(ends[1].distance < ends[0].distance);
-    for end in [nearer, 1 - nearer] {
-        least_between(places, [ends[end], middle], least, found);
     }
 }

@@ -60,14 +60,7 @@ impl NcControl {
     ) -> Self {
         let lexicon = Lexicon::new(spoken.language, spoken.writes, &spoken.words)
             .with_rapids(spoken.rapids_at_feed);
-        Self {
-            machine: machine.clone(),
-            spoken,
-            lexicon,
-            offsets,
-            own_lines: Vec::new(),
-            limits,
-        }
+        Self { machine: machine.clone(), spoken, lexicon, offsets, own_lines: Vec::new(), limits }
     }
 
     /// As the flags say.

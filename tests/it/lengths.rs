@@ -423,7 +423,7 @@ fn a_spindle_that_waits_turns_before_the_tool_goes_in() {
 #[test]
 fn a_length_in_the_work_offset_is_that_of_the_tool_in_the_spindle() {
     let machine = "extends = \"head-head\"\n[tools.1]\nlength = 174.8\n[tools.2]\nlength = 127.419\n\
-         [control]\ndialect = \"grbl\"\ntcp = \"post\"\nretract = { Z = 250 }\n[control.grbl]\nhal = true\n";
+         [control]\ndialect = \"grbl\"\ntcp = \"post\"\nretract = { Z = 400 }\n[control.grbl]\nhal = true\n";
     let operation = |tool: u32| {
         format!(
             "LOADTL/{tool}\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/10,0,60,0.3,0,0.9539392\nFEDRAT/300,MMPM\nGOTO/0,0,20\n\

@@ -21,7 +21,7 @@ const MOST: [(&str, f64); 5] =
     [("X", 12_000.0), ("Y", 12_000.0), ("Z", 750.0), ("U", 5000.0), ("V", 12_000.0)];
 
 /// F of G0.
-const TRAVEL: f64 = 9000.0;
+const TRAVEL: f64 = 5000.0;
 
 /// What a firmware makes of a line.
 struct Firmware {

@@ -393,7 +393,8 @@ fn with_times(text: &str, factor: f64) -> String {
         .collect()
 }
 
-/// Rounded words make up to a seventh of the way of a block of 0.02 mm, and nothing of that of a thousand.
+/// Rounded words make up to a seventh of the way of a block of 0.02 mm, and nothing of that of a thousand; where axes turn
+/// each may be slower by the tolerance besides.
 #[test]
 fn feeds_of_short_blocks_are_compared_together() {
     let folder = tempfile::tempdir().unwrap();
@@ -413,7 +414,7 @@ fn feeds_of_short_blocks_are_compared_together() {
     let run = post(&[&["-q", "--verify", "-o", &nc, &cl][..], &job].concat());
     assert_eq!(run.code, 0, "{}", run.err);
     let text = fs::read_to_string(&nc).unwrap();
-    for factor in [1.0, 0.8, 0.95, 1.05, 1.3] {
+    for factor in [1.0, 0.6, 1.05, 1.3] {
         let changed = with_times(&text, factor);
         fs::write(&nc, &changed).unwrap();
         let run = post(&[&["verify", "-q", &nc, "--against", &cl][..], &job].concat());

@@ -100,7 +100,7 @@ pub(crate) fn retract_not_said(machine: &Machine, writes: Capabilities) -> Optio
 /// A control without machine coordinates is sent to no position of theirs.
 pub(crate) fn no_park(machine: &Machine, writes: Capabilities) -> Option<Diagnostic> {
     let frame = &machine.frame;
-    let keys = [("change", &frame.change), ("park", &frame.park)];
+    let keys = [("change", &frame.change), ("park", &frame.park), ("retract", &frame.aside)];
     let (key, _) = keys.iter().find(|(_, stands)| !stands.is_empty())?;
     writes.has(Capabilities::NO_PARK).then(|| {
         let dialect = &machine.control.dialect;

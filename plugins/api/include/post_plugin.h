@@ -428,6 +428,8 @@ typedef struct {
 /* Where no linear axis moves, a feed a minute counts along the rotary axis that turns the most, in degrees; else
  * along the root of the sum of their squares. */
 #define POST_WRITES_FEED_LONGEST_TURN 0x0008000000000000u
+/* Park does not come: the control has no words for positions in machine coordinates. */
+#define POST_WRITES_NO_PARK 0x0010000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

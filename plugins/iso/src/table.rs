@@ -46,7 +46,7 @@ pub struct Table {
     pub feed_all_axes: bool,
     /// G0 goes at F: each rapid has that of the option `travel_feed`, and the next cut its own again.
     pub rapids_at_feed: bool,
-    /// The word of motion stands in every block that moves: one that begins with an axis is no block.
+    /// A block begins with its command: the word of motion stands in each that moves, and S behind that of the spindle.
     pub motion_in_every_block: bool,
     /// The sign of the word of an endless rotary axis can be its way.
     pub sign_is_way: bool,

@@ -13,7 +13,7 @@ impl Control for Marlin {
     const LEAVES_CUTS: bool = true;
 
     const TABLE: &'static Table = &Table {
-        codes: MotionCodes { stop: ["M0", "M1"], ..Table::PRINTER.codes },
+        codes: MotionCodes { stop: ["M0", ""], ..Table::PRINTER.codes },
         relies: RELIES,
         words: &[OWN, Table::PRINTER.words[0]],
         ..Table::PRINTER
@@ -52,6 +52,7 @@ impl Control for Marlin {
 const RELIES: &[&str] = &[
     "the part origin is the zero of the words: G92 or a G54 of the build puts it there ahead of the program",
     "rotary axes are built with AXIS4_ROTATES and AXIS4_NAME, so that F does not count them beside X, Y and Z",
+    "M0 waits for the user (a build with HAS_RESUME_CONTINUE), and S of M3 is a speed (CUTTER_POWER_UNIT RPM)",
     "a block whose linear axes go less than 1 um counts as one of rotary axes alone",
 ];
 

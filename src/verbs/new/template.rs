@@ -556,7 +556,8 @@ fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
             "\"post\": axis positions; \"control\": the tip (G43.4, M128, …)",
         );
     }
-    if choices.class == Class::LatheXzc {
+    let no_positions = matches!(choices.dialect.as_str(), "klipper" | "marlin");
+    if choices.class == Class::LatheXzc && !no_positions {
         line("park    = { C = 0 }", "turned back off the part, at the end");
     }
     if choices.units == OutputUnits::Inch {
@@ -568,8 +569,9 @@ fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     {
         line(&format!("retract = {{ Z = {} }}", top - below), remark);
     }
-    if matches!(choices.dialect.as_str(), "klipper" | "marlin") {
+    if no_positions {
         line("retract = {}", "nothing retracts: there are no machine coordinates");
+        line("change  = {}", "and nothing goes to where a tool is changed");
     }
     let options = options(choices);
     if !options.is_empty() {

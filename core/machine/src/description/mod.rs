@@ -433,6 +433,12 @@ impl Machine {
         self.outlines.iter().find(|outline| outline.number == number)
     }
 
+    /// Whether rotary axes swing the tool to its places: linear ones, if it has any, do not place the tip by themselves.
+    pub fn is_arm(&self) -> bool {
+        let swings = self.axes.iter().filter(|axis| axis.joint.rotary && !axis.carries_part);
+        swings.count() > 1 && self.solver(0.0).is_ok_and(|solver| !solver.places_tip())
+    }
+
     /// The machine with a tool of `length` mm in it and its indexed axes where they start, ready to be solved.
     ///
     /// # Errors

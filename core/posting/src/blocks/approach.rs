@@ -135,7 +135,7 @@ impl BlockStage<'_> {
             return word != DEPTH || !along;
         }
         if machine.control.tcp == Tcp::Post {
-            return !placer.solver().places_tip() && !self.comes_in_by_depth(node, &way);
+            return self.arm && !self.comes_in_by_depth(node, &way);
         }
         // Ahead of a block that has the control keep the tip with a move, words are axis positions: the same where
         // nothing is turned.

@@ -125,6 +125,8 @@ pub(crate) struct BlockStage<'a> {
     machine: &'a Machine,
     /// The machine with the head that it starts with.
     base: &'a Machine,
+    /// Its tool is swung to its places.
+    arm: bool,
     model: &'a mut dyn ModelSession,
     /// Solves the points; none before the first.
     placer: Option<Rc<Placer>>,
@@ -194,6 +196,7 @@ impl<'a> BlockStage<'a> {
         Self {
             machine,
             base: machine,
+            arm: machine.is_arm(),
             model,
             placer: None,
             planes: ActivePlane::new(format),

@@ -459,10 +459,7 @@ impl EmitStage<'_> {
         let machine = self.machine;
         let retracts = machine.frame.leave.is_none() && !machine.frame.retract.is_empty();
         let slides = machine.axes.iter().any(|axis| !axis.joint.rotary);
-        machine.control.tcp == Tcp::Post
-            && slides
-            && !retracts
-            && machine.solver(0.0).is_ok_and(|solver| !solver.places_tip())
+        machine.control.tcp == Tcp::Post && slides && !retracts && machine.is_arm()
     }
 
     /// The words after it are those of a plane, or of none: the plane before it ends, the tool clear of the

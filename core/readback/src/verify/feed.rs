@@ -192,16 +192,25 @@ impl<C: Course> Verifier<'_, C> {
         cl_line: Option<u64>,
     ) {
         let way = way_of(places);
-        if way < SHORT || motion.minutes <= 0.0 || self.is_as_fast_as_asked(motion, places, asked) {
+        // Of a plan those that rounding makes slower are no fewer, and cannot be told from what the plan holds up.
+        let nothing = way < SHORT || motion.minutes <= 0.0 || self.rules.planned;
+        if nothing || self.is_as_fast_as_asked(motion, places, asked) {
             return;
         }
         if way / motion.minutes < asked && self.slower_for(motion, way).is_some() {
             return;
         }
+        // Where axes turn about a tip that stands the feed counts degrees, and the points that a time was counted by are
+        // within the tolerance of those that the tip comes to.
+        let turned = if turns(motion) { self.rules.tolerance } else { 0.0 };
+        let chord = (places[places.len() - 1].point - places[0].point).norm();
+        if chord < 2.0 * turned {
+            return;
+        }
         let [above, below] = self.printed_shares(motion);
         let time = FeedTime {
             taken: motion.minutes,
-            asked: [self.least_way(motion, places, way) / asked, way / asked],
+            asked: [self.least_way(motion, places, way) / asked, (way + turned) / asked],
             printed: [above * motion.minutes, below * motion.minutes],
             way,
             per_mm: 1.0 / asked,

@@ -42,7 +42,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use post_machine::description::{Machine, Rapid};
 use post_machine::diagnostic::{Severity, SourceFiles};
-use post_machine::kinematics::{Joints, Solver};
+use post_machine::kinematics::Joints;
 use post_plugin::Lengths;
 
 use crate::course::Course;
@@ -263,13 +263,10 @@ impl<'m, C: Course> Verifier<'m, C> {
             // Both sides are cut into pieces.
             PlaceBound { point: bound.point + 2.0 * sag.point, axis: bound.axis + 2.0 * sag.axis }
         };
-        let solver = machine.solver(0.0).ok();
-        let swings = machine.axes.iter().filter(|axis| axis.joint.rotary && !axis.carries_part);
-        let swings = swings.count() > 1;
         Self {
             machine,
-            planar: solver.as_ref().is_some_and(Solver::planar),
-            arm: swings && solver.is_some_and(|solver| !solver.places_tip()),
+            planar: machine.solver(0.0).is_ok_and(|solver| solver.planar()),
+            arm: machine.is_arm(),
             along,
             sag,
             rapid_sag: PlaceBound::new(
@@ -390,10 +387,23 @@ impl<'m, C: Course> Verifier<'m, C> {
     /// A tool is not changed while it cuts, be it for itself.
     fn look_for_a_cut(&mut self, line: u64) {
         self.leave_cut();
-        if self.hole.is_some() || !self.apart && self.next.is_none() {
+        let in_a_cut = !self.apart && self.next.is_none() && !self.changes_behind_the_cut();
+        if self.hole.is_some() || in_a_cut {
             let message = "the tool is changed in the midst of a cut".to_owned();
             self.fault_at("tool", message, Some(BlockPlace::of_line(line)), None, None);
         }
+    }
+
+    /// Whether the next cut of the course, right behind the one that the program may have ended, has another tool.
+    fn changes_behind_the_cut(&mut self) -> bool {
+        let Some(last) = self.reach.iter().rposition(|span| !span.is_empty() && span.to >= 1.0)
+        else {
+            return false;
+        };
+        let tool = self.track.get(last).and_then(|element| element.asked.tool);
+        let next = self.behind_events(last + 1);
+        let next = next.and_then(|index| self.track.get(index));
+        next.is_some_and(|next| next.asked.tool != tool)
     }
 
     /// The program is at its end: what was found.

@@ -29,15 +29,8 @@ impl<C: Course> Verifier<'_, C> {
             return;
         }
         let mut near = f64::INFINITY;
-        // A way as long as this from where the motion is looked at comes no nearer than `least`, mm.
-        let mut clear = 0.0;
         for ends in places.windows(2) {
-            let [from, to] = [ends[0].point, ends[1].point];
-            clear -= (to - from).norm();
-            if clear < 0.0 {
-                near = near.min(self.cut_path.least_on(from, to, least));
-                clear = self.cut_path.distance(to) - least;
-            }
+            near = near.min(self.cut_path.least_on(ends[0].point, ends[1].point, least));
         }
         if near >= least {
             return;

@@ -43,11 +43,18 @@ impl Engine {
             }
             Spindle::On { rpm, sense } => {
                 let block = &mut self.motion.block;
-                block.number("S", rpm, 0, NumberStyle::default());
-                block.word(match sense {
+                let word = match sense {
                     SpindleSense::Clockwise => clockwise,
                     SpindleSense::CounterClockwise => counter,
-                });
+                };
+                let command_first = self.table.motion_in_every_block;
+                if command_first {
+                    block.word(word);
+                }
+                block.number("S", rpm, 0, NumberStyle::default());
+                if !command_first {
+                    block.word(word);
+                }
                 block.end(out);
             }
         }

@@ -46,13 +46,13 @@ const FIRMWARE: [Firmware; 3] = [
         reads: &["G21", "G90", "G92", "G54", "M82", "M104", "M109", "M140", "M190"],
         // What config.g must have: M203 I0.6.
         least: 0.6,
-        turned: |[u, v, _]| u.hypot(v),
+        turned: |[u, v, _]| libm::hypot(u, v),
     },
     Firmware {
         name: "marlin",
         reads: &["G21", "G90", "G92", "M82", "M104", "M109", "M140", "M190"],
         least: 0.0,
-        turned: |[u, v, _]| u.hypot(v),
+        turned: |[u, v, _]| libm::hypot(u, v),
     },
 ];
 

@@ -403,9 +403,11 @@ fn feeds_of_short_blocks_are_compared_together() {
     let mut text = "LOADTL/1\nSPINDL/4000\nRAPID\nGOTO/20,0,50,0,0,1\nFEDRAT/80,MMPM\n".to_owned();
     for point in 0..3000 {
         let turn = 0.001 * f64::from(point);
-        let lean = 0.35 + 0.05 * (0.7 * turn).sin();
-        let axis = [lean.sin() * turn.cos(), lean.sin() * turn.sin(), lean.cos()];
-        let tip = [20.0 * turn.cos(), 20.0 * turn.sin(), 0.3 * turn];
+        let [sine, cosine] = [libm::sin(turn), libm::cos(turn)];
+        let lean = 0.35 + 0.05 * libm::sin(0.7 * turn);
+        let aside = libm::sin(lean);
+        let axis = [aside * cosine, aside * sine, libm::cos(lean)];
+        let tip = [20.0 * cosine, 20.0 * sine, 0.3 * turn];
         let words = tip.iter().chain(&axis).map(|value| format!("{value:.7}"));
         text.push_str(&format!("GOTO/{}\n", words.collect::<Vec<_>>().join(",")));
     }

@@ -3,15 +3,35 @@
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
 use post_iso::{Control, Engine, Iso, MotionCodes, Printer, Table};
-use post_plugin::{Capabilities, Event, Meaning, Setup, VocabularyWord, export_dialect};
+use post_plugin::{AxisWord, Capabilities, Event, Meaning, Setup, VocabularyWord, export_dialect};
+
+/// Marlin counts whole steps, and none of a way that is shorter than one: 80 steps a mm are usual.
+const STEP: f64 = 0.0125;
 
 struct Marlin {
     printer: Printer,
+    /// Of each word whether its axis turns; none of what an extruder pushes out.
+    turns: Vec<Option<bool>>,
+    /// Words of the last place.
+    at: Vec<f64>,
+}
+
+impl Marlin {
+    /// Whether F of a cut to `words` would count degrees, though the linear axes move.
+    fn counts_degrees(&self, words: &[f64]) -> bool {
+        let mut most = [0.0_f64; 2];
+        for ((to, from), turns) in words.iter().zip(&self.at).zip(&self.turns) {
+            if let Some(turns) = turns {
+                let most = &mut most[usize::from(*turns)];
+                *most = most.max((to - from).abs());
+            }
+        }
+        let [slides, turns] = most;
+        turns > 0.0 && slides > 0.0 && slides < STEP
+    }
 }
 
 impl Control for Marlin {
-    const LEAVES_CUTS: bool = true;
-
     const TABLE: &'static Table = &Table {
         codes: MotionCodes { stop: ["M0", ""], ..Table::PRINTER.codes },
         relies: RELIES,
@@ -24,7 +44,10 @@ impl Control for Marlin {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        Ok(Marlin { printer: Printer::open(setup, Some("Marlin"))? })
+        let printer = Printer::open(setup, Some("Marlin"))?;
+        let turns = |word: &AxisWord<'_>| (word.name != "E").then_some(word.rotary);
+        let turns = setup.words.iter().map(turns).collect();
+        Ok(Marlin { printer, turns, at: Vec::new() })
     }
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {
@@ -37,6 +60,21 @@ impl Control for Marlin {
         engine: &mut Engine,
         out: &mut String,
     ) -> Result<bool, String> {
+        if let Event::Linear { words, .. } = event
+            && self.counts_degrees(words)
+        {
+            return Err(format!(
+                "the linear axes go less than {STEP} mm while others turn: Marlin counts whole steps, and F would be degrees \
+                 a minute: another way of the part on the machine, or another firmware"
+            ));
+        }
+        if let Event::Position { words, .. }
+        | Event::Rapid { words, .. }
+        | Event::Linear { words, .. } = event
+        {
+            self.at.clear();
+            self.at.extend_from_slice(words);
+        }
         Ok(Printer::write(event, engine, out))
     }
 

@@ -4,16 +4,16 @@
 
 use post_iso::{Control, Engine, Iso, MotionCodes, Offset, Printer, Table, offset_of_six, options};
 use post_plugin::{
-    Capabilities, Event, Meaning, OptionSpec, Setup, VocabularyWord, export_dialect,
+    Capabilities, Event, Feed, Meaning, OptionSpec, Setup, VocabularyWord, export_dialect,
 };
 
 struct RepRapFirmware {
     printer: Printer,
+    /// No move is slower, mm/min.
+    least_feed: f64,
 }
 
 impl Control for RepRapFirmware {
-    const LEAVES_CUTS: bool = true;
-
     const TABLE: &'static Table = &Table {
         options: OPTIONS,
         codes: MotionCodes { stop: ["M226", ""], ..Table::PRINTER.codes },
@@ -39,7 +39,8 @@ impl Control for RepRapFirmware {
     }
 
     fn open(setup: &Setup<'_>) -> Result<Self, String> {
-        Ok(RepRapFirmware { printer: Printer::open(setup, None)? })
+        let printer = Printer::open(setup, None)?;
+        Ok(RepRapFirmware { printer, least_feed: setup.number("least_feed") })
     }
 
     fn begin(&self, engine: &mut Engine, out: &mut String) {
@@ -52,7 +53,19 @@ impl Control for RepRapFirmware {
         engine: &mut Engine,
         out: &mut String,
     ) -> Result<bool, String> {
-        Ok(Printer::write(event, engine, out))
+        let feed = match event {
+            Event::Linear { feed, .. } => Some(*feed),
+            Event::Position { feed, .. } => *feed,
+            _ => None,
+        };
+        match feed {
+            Some(Feed::PerMinute(feed)) if feed < self.least_feed => Err(format!(
+                "F{feed} is slower than RepRapFirmware goes, F{} (`least_feed`, M203 I): the bead would come too fast. \
+                 The linear axes nearly stand while others turn: a larger feed, or another way of the part on the machine",
+                self.least_feed
+            )),
+            _ => Ok(Printer::write(event, engine, out)),
+        }
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -67,6 +80,12 @@ impl Control for RepRapFirmware {
 const OPTIONS: &[OptionSpec] = &[
     Printer::TRAVEL_FEED,
     Printer::MILL,
+    OptionSpec::number(
+        "least_feed",
+        (0.0, 1000.0),
+        0.6,
+        "F below which the firmware does not go, mm/min: that of M203 I. 30 where config.g says nothing.",
+    ),
     OptionSpec::text("work_offset", "G54", "G54 to G59, or G59.1 to G59.3."),
     options::decimals(3),
     options::rotary_decimals(3),

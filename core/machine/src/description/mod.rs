@@ -433,10 +433,11 @@ impl Machine {
         self.outlines.iter().find(|outline| outline.number == number)
     }
 
-    /// Whether rotary axes swing the tool to its places: linear ones, if it has any, do not place the tip by themselves.
+    /// Whether rotary axes swing the tool to its places: linear ones, if it has any, do not place the tip by themselves, nor
+    /// is it a head of one or two rotary axes, which point the tool, over a table that turns.
     pub fn is_arm(&self) -> bool {
         let swings = self.axes.iter().filter(|axis| axis.joint.rotary && !axis.carries_part);
-        swings.count() > 1 && self.solver(0.0).is_ok_and(|solver| !solver.places_tip())
+        swings.count() > 2 && self.solver(0.0).is_ok_and(|solver| !solver.places_tip())
     }
 
     /// The machine with a tool of `length` mm in it and its indexed axes where they start, ready to be solved.

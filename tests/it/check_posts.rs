@@ -91,7 +91,9 @@ fn an_upright_program_is_posted_where_the_check_says_so() {
     fs::write(&part, UPRIGHT).unwrap();
     let (mut posted, mut refused, mut unloaded, mut poor) = (0, 0, 0, 0);
     let mut faults = Vec::new();
-    for (machine, settings) in variants() {
+    // The part is milled, which a printer refuses.
+    let mills = variants().into_iter().filter(|(machine, _)| machine != "printer-open5x");
+    for (machine, settings) in mills {
         let file: toml::Table = fs::read_to_string(root().join(format!("machines/{machine}.toml")))
             .unwrap()
             .parse()

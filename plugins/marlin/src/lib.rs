@@ -5,8 +5,8 @@
 use post_iso::{Control, Engine, Iso, MotionCodes, Printer, Table};
 use post_plugin::{AxisWord, Capabilities, Event, Meaning, Setup, VocabularyWord, export_dialect};
 
-/// Marlin counts whole steps, and none of a way that is shorter than one: 80 steps a mm are usual.
-const STEP: f64 = 0.0125;
+/// Marlin counts whole steps, and none of a way that is shorter than one: those of the finest printers, mm.
+const STEP: f64 = 0.002;
 
 struct Marlin {
     printer: Printer,

@@ -29,9 +29,9 @@ impl Dialect for Watch {
     }
 
     fn capabilities(&self) -> Capabilities {
-        // It retracts wherever it is sent.
+        // It retracts and parks wherever it is sent.
         let all = CAPABILITIES.iter().map(|spec| spec.set);
-        let not = [Capabilities::RETRACT_SAID, Capabilities::CYCLE_NO_DWELL];
+        let not = [Capabilities::RETRACT_SAID, Capabilities::CYCLE_NO_DWELL, Capabilities::NO_PARK];
         let all = all.filter(|set| !not.contains(set));
         all.fold(Capabilities::NONE, |all, set| all | set)
     }

@@ -3,7 +3,7 @@
 //! A short program is written twice, with one number changed; where the text of the move stays the same, the dialect
 //! does not print it.
 
-use post_plugin::{DialectSession as _, Event, Feed, Format, quantise};
+use post_plugin::{Capabilities, DialectSession as _, Event, Feed, Format, quantise};
 
 use super::Case;
 use super::pen::{BEGIN, ELSEWHERE, END, Pen, rounded};
@@ -112,7 +112,11 @@ const DIRECTION: f64 = 0.01;
 
 /// Runs all kinds of moves, with every word and feed.
 pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
-    let format = pen.open()?.format().clone();
+    let opened = pen.open()?;
+    let format = opened.format().clone();
+    // Lines of the user's own retract there, wherever that is.
+    let own_retract = opened.capabilities().has(Capabilities::NO_PARK);
+    drop(opened);
     for kind in MoveKind::all(&format) {
         if pen.leaves_out(&kind.event(&[], 0.0)) {
             continue;
@@ -122,7 +126,7 @@ pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
             continue;
         }
         for word in 0..format.words.len() {
-            if !kind.has(&pen.setup.words[word]) {
+            if !kind.has(&pen.setup.words[word]) || own_retract && kind == Retract {
                 continue;
             }
             if let Some(fault) = word_fault(pen, &format, kind, word)? {

@@ -229,7 +229,10 @@ impl RapidEnd {
         slack: f64,
     ) -> Option<StrayRapid> {
         let on_line = |pose: &Pose| self.off_line(pose, slack) <= slack;
-        if self.stays_retracted(machine, slack) || self.led || poses.any(on_line) {
+        if retract::stays_retracted(machine, [&self.from, &self.joints], slack)
+            || self.led
+            || poses.any(on_line)
+        {
             return None;
         }
         let turned = libm::fabs(self.joints[axis] - self.from[axis]);
@@ -245,7 +248,9 @@ impl RapidEnd {
         slack: f64,
     ) -> Option<StrayRapid> {
         let off = poses.map(|pose| self.off_line(pose, slack)).fold(f64::INFINITY, f64::min);
-        let sent = self.led || off <= slack || self.stays_retracted(machine, slack);
+        let sent = self.led
+            || off <= slack
+            || retract::stays_retracted(machine, [&self.from, &self.joints], slack);
         (!sent).then(|| self.stray(0, off, StrayKind::Tip))
     }
 
@@ -268,12 +273,6 @@ impl RapidEnd {
         let places = asked.iter().filter(|asked| !asked.left || !falls(&asked.pose));
         let by = places.map(|asked| below(&asked.pose)).fold(f64::INFINITY, f64::min);
         (by > slack && by.is_finite()).then(|| self.stray(0, by, StrayKind::Low))
-    }
-
-    /// A way from one place to another at which the machine file has the tool retracted.
-    fn stays_retracted(&self, machine: &Machine, slack: f64) -> bool {
-        let mut ends = [&self.from, &self.joints].into_iter();
-        ends.all(|joints| retract::is_retracted(machine, joints, slack))
     }
 
     /// How far the tip is off the line of a tool at a place of the course, from `slack` mm below that place outwards, mm.

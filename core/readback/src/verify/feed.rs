@@ -174,10 +174,7 @@ impl<C: Course> Verifier<'_, C> {
     /// the tip goes in a bow about it, out and back by the tolerance, and no more.
     fn least_way(&self, motion: &Motion, places: &[ToolPlace], way: f64) -> f64 {
         match turns(motion) {
-            true => {
-                let chord = (places[places.len() - 1].point - places[0].point).norm();
-                chord.max(way - 2.0 * self.rules.tolerance)
-            }
+            true => chord_of(places).max(way - 2.0 * self.rules.tolerance),
             false => way,
         }
     }
@@ -203,8 +200,7 @@ impl<C: Course> Verifier<'_, C> {
         // Where axes turn about a tip that stands the feed counts degrees, and the points that a time was counted by are
         // within the tolerance of those that the tip comes to.
         let turned = if turns(motion) { self.rules.tolerance } else { 0.0 };
-        let chord = (places[places.len() - 1].point - places[0].point).norm();
-        if chord < 2.0 * turned {
+        if chord_of(places) < 2.0 * turned {
             return;
         }
         let [above, below] = self.printed_shares(motion);
@@ -252,6 +248,11 @@ impl<C: Course> Verifier<'_, C> {
         }
         rounded
     }
+}
+
+/// The straight way from one end to the other, mm.
+fn chord_of(places: &[ToolPlace]) -> f64 {
+    (places[places.len() - 1].point - places[0].point).norm()
 }
 
 /// Whether all axes go evenly, and rotary ones turn.

@@ -57,12 +57,9 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A way from one place to another at which the machine file has the tool retracted.
     fn stays_retracted(&self, motion: &Motion) -> bool {
-        let slack = self.rapid_bound.point;
-        let machine = self.machine;
-        let retracted = |joints| retract::is_retracted(machine, joints, slack);
-        !machine.frame.retract.is_empty()
-            && retracted(&motion.from.joints)
-            && retracted(&motion.to.joints)
+        let ends = [&motion.from.joints, &motion.to.joints];
+        !self.machine.frame.retract.is_empty()
+            && retract::stays_retracted(self.machine, ends, self.rapid_bound.point)
     }
 
     /// How near the rapids of the course that a motion has passed and the one that it is on come to its cuts between their

@@ -42,6 +42,11 @@ pub(super) fn is_retracted(machine: &Machine, joints: &Joints, slack: f64) -> bo
     !stays_on_line && lacks(machine, joints, slack).is_none()
 }
 
+/// A way from one place to another at which the machine file has the tool retracted.
+pub(super) fn stays_retracted(machine: &Machine, ends: [&Joints; 2], slack: f64) -> bool {
+    ends.iter().all(|joints| is_retracted(machine, joints, slack))
+}
+
 /// The axis that does not stand where the machine file has it for a tool change, and how far it is off, mm or degrees.
 fn off_change(machine: &Machine, joints: &Joints, slack: f64) -> Option<(usize, f64)> {
     let off = machine.frame.change.iter().map(|(place, value)| {

@@ -54,7 +54,9 @@ fn every_machine_of_the_library_has_axes_that_every_dialect_writes() {
     let files = fs::read_dir(root().join("machines")).unwrap().flatten();
     let names = files.map(|file| file.file_name().into_string().unwrap());
     let mut opened = 0;
-    for name in names.filter(|name| name.ends_with(".toml")) {
+    // E of a printer is a word of its firmware alone.
+    let mills = names.filter(|name| name.ends_with(".toml") && !name.starts_with("printer"));
+    for name in mills {
         for dialect in ["fanuc", "linuxcnc", "heidenhain"] {
             let setting = format!("control.dialect={dialect}");
             let machine = format!("machines/{name}");

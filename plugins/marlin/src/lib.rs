@@ -95,7 +95,7 @@ const RELIES: &[&str] = &[
 ];
 
 /// Words that it reads and that are not written here.
-const OWN: &[(&str, Meaning)] = &[("G4 S", Meaning::DwellSeconds)];
+const OWN: &[(&str, Meaning)] = &[("G4 S", Meaning::DwellSeconds), ("M1", Meaning::Stop)];
 
 /// Of a machine with a spindle.
 const MILL: &Table =

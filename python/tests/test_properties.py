@@ -141,10 +141,12 @@ def aside(points: Floats, way: Floats) -> tuple[Floats, Floats]:
     """How far points are from a line of chords, and which chord is nearest."""
     begin, along = way[:-1], np.diff(way, axis=0)
     size = np.maximum(np.einsum("mi,mi->m", along, along), 1e-18)
-    share = np.clip(np.einsum("nmi,mi->nm", points[:, None] - begin, along) / size, 0, 1)
-    far = np.linalg.norm(points[:, None] - begin - share[:, :, None] * along, axis=2)
-    nearest = far.argmin(axis=1)
-    return far[np.arange(len(points)), nearest], nearest
+    off = points[:, None] - begin
+    share = np.clip(np.einsum("nmi,mi->nm", off, along) / size, 0, 1)
+    off -= share[:, :, None] * along
+    squares = np.einsum("nmi,nmi->nm", off, off)
+    nearest = squares.argmin(axis=1)
+    return np.sqrt(squares[np.arange(len(points)), nearest]), nearest
 
 
 def angle(one: Floats, other: Floats) -> Floats:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -32,19 +32,20 @@ LED: dict[str, set[float]] = {"fanuc": {43.4}, "mazak": {43.4}, "mitsubishi": {4
 
 @dataclass(frozen=True)
 class Cut:
-    """A motion at feed. ``tips`` and ``axes`` in the frame of the part at ``SHARES`` of it, ``minutes`` that it lasts
-    (none where the control's rule is not known), ``spindle`` in 1/min, negative against the clock's way."""
+    """A motion at feed. ``q`` at ``SHARES`` of it, and by ``placed`` ``tips`` and ``axes`` there in the frame of the part;
+    ``minutes`` that it lasts (none where the control's rule is not known), ``spindle`` in 1/min, negative against the
+    clock's way."""
 
     line: int
     q: np.ndarray
-    tips: np.ndarray
-    axes: np.ndarray
     minutes: float | None
     led: bool
     tool: int | None
     spindle: float
     coolant: frozenset[int]
     dwelt: float
+    tips: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))
+    axes: np.ndarray = field(default_factory=lambda: np.empty((0, 3)))
 
 
 @dataclass
@@ -145,15 +146,9 @@ class Control(Reader):
             return
         if self.tool not in self.lengths:
             raise Unread(f"{line}: a cut without a tool")
-        real = self.lengths[self.tool]
-        carried, _ = machine.place(len(machine.axes), q)
-        held, _ = machine.place(0, q)
-        leans = np.einsum("nji,nj->ni", held, carried @ machine.tool_axis)
         yield Cut(
             line,
             q,
-            machine.tip_in_part(q, real),
-            leans,
             self._minutes(float(steps), float(np.linalg.norm(turned)), led),
             led,
             self.tool,
@@ -294,7 +289,9 @@ class Control(Reader):
             self.hole = Hole(words["Z"] if self.dialect == "fagor" else words["R"], deep)
         elif codes & {80, 0, 1, 2, 3}:
             self.hole = None
-        axes = {letter: value for letter, value in words.items() if letter in self.names}
+        # A peck of Fagor's cycles is B, whatever axes there are.
+        own = {"B"} if self.dialect == "fagor" and codes & DRILLS else set()
+        axes = {letter: value for letter, value in words.items() if letter in self.names - own}
         if self.hole and axes:
             yield from self._drill(line, axes)
         elif axes or (self.mode > 1 and set(words) & set("IJK")):
@@ -401,13 +398,30 @@ class Control(Reader):
                 yield from self.go(line, axes, 3 if "DR+" in block else 2, arc)
 
 
+def placed(machine: Machine, cuts: list[Cut], lengths: dict[int, float]) -> list[Cut]:
+    """The cuts with tip and tool axis, worked out at once for all of them that one tool makes."""
+    found = list(cuts)
+    for tool in {cut.tool for cut in cuts if cut.tool is not None}:
+        own = [place for place, cut in enumerate(cuts) if cut.tool == tool]
+        q = np.vstack([cuts[place].q for place in own])
+        carried, _ = machine.place(len(machine.axes), q)
+        held, _ = machine.place(0, q)
+        axes = np.einsum("nji,nj->ni", held, carried @ machine.tool_axis)
+        tips = machine.tip_in_part(q, lengths[tool])
+        for number, place in enumerate(own):
+            rows = slice(number * len(SHARES), (number + 1) * len(SHARES))
+            found[place] = replace(cuts[place], tips=tips[rows], axes=axes[rows])
+    return found
+
+
 def groups(machine: Machine, text: str, lengths: dict[int, float], dialect: str) -> list[list[Cut]]:
     """Cuts that follow one another with no rapid between them; ``dwelt`` is what was dwelt since the program's start."""
+    run = list(Control(machine, lengths, dialect).cuts(text))
+    cuts = iter(placed(machine, [cut for cut in run if cut is not None], lengths))
     found: list[list[Cut]] = [[]]
-    for cut in Control(machine, lengths, dialect).cuts(text):
-        if cut is None:
-            if found[-1]:
-                found.append([])
-        else:
-            found[-1].append(replace(cut))
+    for cut in run:
+        if cut is not None:
+            found[-1].append(next(cuts))
+        elif found[-1]:
+            found.append([])
     return [group for group in found if group]

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 Toml = dict  # What a file of it, or a table, is read as.
+SAME = np.eye(3)
 
 
 def turn(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -18,7 +19,7 @@ def turn(axis: np.ndarray, angle: np.ndarray) -> np.ndarray:
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     sine, cosine = np.sin(angle)[:, None, None], np.cos(angle)[:, None, None]
-    return np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
+    return SAME + sine * cross + (1 - cosine) * (cross @ cross)
 
 
 @dataclass
@@ -159,18 +160,19 @@ class Machine:
         if axis.carries_part:
             way = -way
         if not axis.rotary:
-            return np.broadcast_to(np.eye(3), (len(way), 3, 3)), way[:, None] * axis.direction
+            return np.broadcast_to(SAME, (len(way), 3, 3)), way[:, None] * axis.direction
         rotation = turn(axis.direction, way)
         return rotation, axis.point - rotation @ axis.point
 
     def place(self, link: int, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Where a link stands: rotations and shifts against the bed, from the bed outward."""
-        rotation, shift = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
+        rotation, shift, turned = np.broadcast_to(SAME, (len(q), 3, 3)), np.zeros((len(q), 3)), False
         order = range(self.bed - 1, link - 1, -1) if link < self.bed else range(self.bed, link)
         for place in order:
             by, to = self._moved(place, q)
-            shift = shift + (rotation @ to[:, :, None])[:, :, 0]
-            rotation = rotation @ by
+            shift = shift + (np.einsum("nij,nj->ni", rotation, to) if turned else to)
+            if self.axes[place].rotary:
+                rotation, turned = rotation @ by if turned else by, True
         return rotation, shift
 
     def tip(self, length: float) -> np.ndarray:
@@ -192,13 +194,13 @@ class Machine:
         """The rotary axes of ``q``, and slides that bring the tip to ``tip``: three linear equations."""
         slides, q = self.slides(), q.copy()
         q[:, slides] = 0.0
-        start = self.tip_in_part(q, length)
-        columns = []
-        for slide in slides:
-            q[:, slide] = 1.0
-            columns.append(self.tip_in_part(q, length) - start)
-            q[:, slide] = 0.0
-        q[:, slides] = np.linalg.solve(np.stack(columns, axis=2), (tip - start)[:, :, None])[:, :, 0]
+        # All slides at zero, and each of them at 1 mm.
+        tried = np.repeat(q[None], 1 + len(slides), axis=0)
+        for number, slide in enumerate(slides, 1):
+            tried[number, :, slide] = 1.0
+        tips = self.tip_in_part(tried.reshape(-1, q.shape[1]), length).reshape(1 + len(slides), len(q), 3)
+        columns = np.moveaxis(tips[1:] - tips[0], 0, 2)
+        q[:, slides] = np.linalg.solve(columns, (tip - tips[0])[:, :, None])[:, :, 0]
         return q
 
     def work_zero(self, length: float = 0.0) -> dict[str, float]:

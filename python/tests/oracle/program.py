@@ -79,7 +79,8 @@ class Reader:
 
     def __init__(self, machine: Machine, lengths: dict[int, float]) -> None:
         self.machine, self.lengths = machine, lengths
-        self.zero = {**{axis.name: 0.0 for axis in machine.axes}, **machine.work_zero()}
+        self.work_zero = functools.cache(machine.work_zero)
+        self.zero = {**{axis.name: 0.0 for axis in machine.axes}, **self.work_zero(0.0)}
         self.shown = {axis.name: float(axis.shown(0.0)) for axis in machine.axes}
         self.mode, self.plane, self.absolute, self.tcp = 0, 17, True, False
         self.offset: float | None = None
@@ -98,7 +99,7 @@ class Reader:
         called = self.offset or 0.0
         length = self.lengths.get(self.tool or 0, 0.0) if self.offset is None else self.offset
         measured = length if self.leans < MEASURED else 0.0
-        zero = {**self.zero, **self.machine.work_zero(measured)}
+        zero = {**self.zero, **self.work_zero(measured)}
         # One unit of that slide's word is a mm along it, whichever way it points.
         return {**zero, self.along: zero[self.along] + called - measured}
 

@@ -7,7 +7,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::chop;
 use super::cut_bounds::CutBounds;
-use super::octree::Octree;
+use super::octree::{FAR, Octree};
 use super::place::{PlaceBound, ToolPlace};
 use crate::course::{Course, CourseItem, CoursePiece, CutRun};
 use crate::{MOST_FAULTS, MotionKind};
@@ -156,7 +156,7 @@ impl CutPath {
         self.places().distance(point)
     }
 
-    /// The least distance on a straight way, as far as it is less than `least`, mm.
+    /// The least distance on a straight way, or by twice [`FAR`] of it more, as far as it is less than `least`, mm.
     pub(super) fn least_on(&mut self, from: Vector3<f64>, to: Vector3<f64>, least: f64) -> f64 {
         let way = to - from;
         let length = way.norm();
@@ -167,7 +167,8 @@ impl CutPath {
             let distance = places.distance(from + way * share);
             found = found.min(distance);
             // Nothing this far on can be as near as that.
-            gone += (distance - least.min(found)).max(2.0 * places.cell());
+            let surely = distance * (1.0 - FAR) - least.min(found);
+            gone += surely.max(distance * FAR).max(2.0 * places.cell());
         }
         found
     }

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use post_host::{Finder, GivenValue, Plugin, PluginFault, PluginKind, ProgramSetup, Reason};
 use post_plugin::{
-    Batch, Coolant, Deviation, DialectSession, Event, Feed, Meaning, ModelSession, Spindle,
-    SpindleSense, Tolerance, VocabularyWord,
+    Batch, Capabilities, Coolant, Deviation, DialectSession, Event, Feed, Meaning, ModelSession,
+    Spindle, SpindleSense, Tolerance, VocabularyWord,
 };
 
 fn five_axes() -> ProgramSetup {
@@ -22,7 +22,8 @@ fn setup_of(plugin: &Plugin) -> ProgramSetup {
     ProgramSetup { options: needed(plugin.name()), ..five_axes() }
 }
 
-fn job() -> Batch {
+/// A small program, which parks the machine in the end where the control has words for that.
+fn job(parks: bool) -> Batch {
     let mut batch = Batch::default();
     let mut line = 0;
     let mut push = |event: Event<'_>| {
@@ -41,7 +42,9 @@ fn job() -> Batch {
     }
     push(Event::Dwell { seconds: 0.25 });
     push(Event::Retract { axes: 0b100, words: &[0.0, 0.0, 500.0, 0.0, 0.0] });
-    push(Event::Park { axes: 0b11, words: &[-250.0, 200.0, 0.0, 0.0, 0.0] });
+    if parks {
+        push(Event::Park { axes: 0b11, words: &[-250.0, 200.0, 0.0, 0.0, 0.0] });
+    }
     push(Event::End);
     batch
 }
@@ -68,7 +71,8 @@ fn a_stock_dialect_writes_the_same_from_a_file_and_linked_in() {
             plugin.options().iter().map(|spec| spec.key).collect()
         };
         assert_eq!(keys(&opened), keys(&linked));
-        let batch = job();
+        let capabilities = linked.dialect(&setup_of(&linked)).unwrap().capabilities();
+        let batch = job(!capabilities.has(Capabilities::NO_PARK));
         let (text, ends) = write(&opened, &batch);
         assert_eq!((text.clone(), ends.clone()), write(&linked, &batch));
         assert_eq!(ends.len(), batch.len());
@@ -400,7 +404,7 @@ fn promises_to_plugins_are_kept() {
 #[test]
 fn sessions_go_to_the_threads_that_use_them() {
     let plugin = Plugin::open(&library(&deps(), "fanuc")).unwrap();
-    let batch = job();
+    let batch = job(true);
     let texts: Vec<String> = std::thread::scope(|scope| {
         let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| write(&plugin, &batch).0)).collect();
         threads.into_iter().map(|thread| thread.join().unwrap()).collect()

@@ -107,7 +107,7 @@ impl FaceFinder {
             }
             ProgramStep::Spline(step) => {
                 let axis = step.end.axis;
-                flatten(&step.spline, CHORD, &mut |tip, _| self.motion(line, tip, axis, true));
+                flatten(&step.spline, CHORD, &mut |chord| self.motion(line, chord.end, axis, true));
             }
             ProgramStep::Cycle(step) => {
                 self.motion(line, step.point.tip, step.point.axis, false);

@@ -78,8 +78,15 @@ fn the_edge_follows_an_arc() {
     let mut met = 0;
     for pose in made.poses() {
         let radius = V::new(pose.tip.x, pose.tip.y, 0.0);
-        // Behind the first chord and before the last.
-        if pose.tip.x > 5.0 && pose.tip.y < -5.0 {
+        if pose.tip.z > 20.01 {
+            continue;
+        }
+        // Lines go on into the arc and out of it: not even beside its ends does the edge turn off them.
+        if pose.tip.x < -1.0 && pose.tip.x > -49.0 {
+            let off = angle(pose.edge, across(V::x(), axis));
+            assert!(off < 0.2, "{}: {off}", pose.tip);
+        }
+        if pose.tip.x > 0.0 && pose.tip.y < 0.0 {
             assert!(near(radius.norm(), 60.0, 0.05 + ROUNDING));
             let tangent = across(V::z().cross(&radius), axis);
             assert!(angle(pose.edge, tangent) < 0.2, "{}", angle(pose.edge, tangent));
@@ -366,3 +373,25 @@ fn an_edge_without_direction_is_refused() {
     let said = knife().with("solution.edge", "cl").refused(&text);
     assert!(said.contains("error[axis]: the direction of the leading edge is null"), "{said}");
 }
+
+#[test]
+fn verifying_sees_an_edge_that_does_not_go_along_the_travel() {
+    let folder = crate::common::with_file("part.cls", SQUARE);
+    let machine = ["-m", "tangential-knife", "--tool-length", "20", "-q"];
+    let run =
+        |arguments: &[&str]| crate::common::post_in(folder.path(), &[arguments, &machine].concat());
+    assert_eq!(run(&["part.cls", "-o", "right.ngc", "--verify"]).code, 0);
+    let right = std::fs::read_to_string(folder.path().join("right.ngc")).unwrap();
+    let turns = |line: &&str| line.starts_with("G93 C");
+    assert!(right.lines().filter(turns).count() >= 4, "{right}");
+    let kept = right.lines().filter(|line| !turns(line)).collect::<Vec<_>>().join("\n");
+    for (wrong, off) in [(kept, "90.000°"), (right.replace("C90.0000", "C84.0000"), "6.000°")] {
+        std::fs::write(folder.path().join("wrong.ngc"), wrong + "\n").unwrap();
+        let found = run(&["verify", "wrong.ngc", "--against", "part.cls"]);
+        let message = format!("the leading edge points {off} off the direction of travel");
+        assert!(found.code == 1 && found.err.contains(&message), "{}", found.err);
+    }
+}
+
+/// Around a square, a corner of it cut off.
+const SQUARE: &str = "UNITS/MM\nLOADTL/1\nRAPID\nGOTO/0,0,30,0,0,1\nFEDRAT/3000,MMPM\nGOTO/0,0,-1\nGOTO/100,0,-1\nGOTO/100,60,-1\nGOTO/85,85,-1\nGOTO/0,90,-1\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,30\nFINI\n";

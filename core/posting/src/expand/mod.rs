@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_machine::description::{Cycles, Machine};
+use post_machine::description::{Cycles, EdgeSource, Machine};
 use post_machine::diagnostic::{Diagnostic, Short, SourceFiles};
 use post_plugin::{Capabilities, Cycle};
 
@@ -67,6 +67,8 @@ pub(crate) struct ExpandStage {
     only_said: bool,
     /// Tangential control of a tool with a leading edge.
     tangential: Option<Tangential>,
+    /// An edge is headed along the travel: chords of a curve carry the direction of travel at their ends, as their edge.
+    heads: bool,
     /// Which curves may stay curves; none if none may.
     keeps: Option<CurvePolicy>,
     /// The cycles that the dialect has words for, as far as the machine file wants them.
@@ -92,6 +94,7 @@ pub fn expanded(
         tip: None,
         only_said: false,
         tangential: None,
+        heads: false,
         keeps: None,
         cycles: Capabilities::NONE,
         only_moves: false,
@@ -134,6 +137,7 @@ impl ExpandStage {
             only_said: false,
             // An edge turns with the path.
             keeps: tangential.is_none().then_some(keeps),
+            heads: machine.edge.is_some() && machine.solution.edge == EdgeSource::Travel,
             tangential,
             findings: findings.clone(),
         }
@@ -319,6 +323,7 @@ impl ExpandStage {
                 axis,
                 pace,
                 chord,
+                edge: if self.heads { arc.travel(t) } else { end.edge },
                 ..*end
             };
             self.go(line, motion, out);
@@ -356,8 +361,13 @@ impl ExpandStage {
         };
         let tolerance = self.chord_tolerance;
         let mut flat = |out: &mut ExpandedSink<'_>| {
-            flatten(spline, tolerance, &mut |tip, chord| {
-                self.go(line, StraightMove { tip, chord, ..*end }, out);
+            flatten(spline, tolerance, &mut |chord| {
+                let edge = match self.heads {
+                    true => spline.derivatives_on(chord.span, chord.at)[1],
+                    false => end.edge,
+                };
+                let motion = StraightMove { tip: chord.end, chord: chord.stray, edge, ..*end };
+                self.go(line, motion, out);
             });
         };
         if !along {

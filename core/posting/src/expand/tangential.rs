@@ -48,7 +48,7 @@ pub(super) struct Tangential {
     edge: Vector3<f64>,
     /// Tip and tool axis of the last point that was taken.
     at: Option<[Vector3<f64>; 2]>,
-    /// The last cut with a direction, and that direction, of length one.
+    /// The last cut with a direction, and that direction at its end, of length one.
     cut: Option<(u64, StraightMove, Vector3<f64>)>,
     /// Whether there was such a cut since the tool came.
     has_cut: bool,
@@ -136,8 +136,9 @@ impl Tangential {
         });
         match way {
             Some(way) => {
-                self.settle(Some(way), out);
-                self.cut = Some((line, motion, way));
+                let [begin, end] = travel(&motion, way);
+                self.settle(Some(begin), out);
+                self.cut = Some((line, motion, end));
             }
             None => self.hold(StreamItem::Point(PathMove { line, motion }), out),
         }
@@ -339,6 +340,15 @@ impl Tangential {
         self.edge = edge;
         motion.edge = heading;
         out.push(StreamItem::Point(PathMove { line, motion }));
+    }
+}
+
+/// The directions of travel at the beginning and the end of a move along `way`: of a chord those of its curve, which carries
+/// that at its end as an edge, and turns as far before the chord's middle as behind it.
+fn travel(motion: &StraightMove, way: Vector3<f64>) -> [Vector3<f64>; 2] {
+    match motion.edge.try_normalize(SHORT).filter(|_| motion.chord > 0.0) {
+        Some(end) => [way * (2.0 * way.dot(&end)) - end, end],
+        None => [way; 2],
     }
 }
 

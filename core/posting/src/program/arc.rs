@@ -153,6 +153,17 @@ impl PathArc {
             + (self.radial * cosine + self.axis.cross(&self.radial) * sine) * radius
             + self.axis * height
     }
+
+    /// The direction of travel at `t` in 0 to 1, part frame, not of length one.
+    pub(crate) fn travel(&self, t: f64) -> Vector3<f64> {
+        let (sine, cosine) = libm::sincos(self.sweep * t);
+        let across = self.axis.cross(&self.radial);
+        let [radius, _] = self.level(t);
+        let [outwards, upwards] = [self.radii, self.heights].map(|[from, to]| to - from);
+        (self.radial * cosine + across * sine) * outwards
+            + (across * cosine - self.radial * sine) * (radius * self.sweep)
+            + self.axis * upwards
+    }
 }
 
 #[cfg(test)]
@@ -172,6 +183,22 @@ mod tests {
         assert!((forth.at(0.5) - point(half, half, 0.0)).norm() < 1e-12);
         assert!((back.at(0.5) - point(-half, -half, 0.0)).norm() < 1e-12);
         assert!((back.at(1.0) - end).norm() < 1e-12);
+    }
+
+    #[test]
+    fn travel_is_what_the_point_does() {
+        let arc = PathArc::new(
+            point(10.0, 0.0, 0.0),
+            point(-2.0, 7.0, 3.0),
+            point(0.5, 0.2, 0.0),
+            -Vector3::z(),
+            2,
+        );
+        let arc = arc.unwrap();
+        for t in [0.1, 0.4, 0.9] {
+            let way = (arc.at(t + 1e-6) - arc.at(t - 1e-6)) / 2e-6;
+            assert!((arc.travel(t) - way).norm() < 1e-6 * way.norm(), "{way}");
+        }
     }
 
     #[test]

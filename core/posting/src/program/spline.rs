@@ -76,18 +76,31 @@ fn count(spline: &BSpline, span: usize, tolerance: f64) -> (f64, f64) {
     (if count < 1.0 { 1.0 } else { count }, bend)
 }
 
-/// Calls `emit` with the ends of chords that stay within `tolerance` mm, and how far each strays.
+/// A chord of a spline.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SplineChord {
+    /// Where it ends: the parameter, and the span that this lies in.
+    pub at: f64,
+    pub span: usize,
+    /// The point there, mm.
+    pub end: Vector3<f64>,
+    /// How far it strays from the spline at most, mm.
+    pub stray: f64,
+}
+
+/// Calls `emit` with chords that stay within `tolerance` mm, in order.
 ///
 /// In one knot span of a cubic the second derivative is linear, so it is largest at an end of the span, and a chord over
 /// `h` of the parameter strays by at most `h²/8` times that.
-pub(crate) fn flatten(spline: &BSpline, tolerance: f64, emit: &mut dyn FnMut(Vector3<f64>, f64)) {
+pub(crate) fn flatten(spline: &BSpline, tolerance: f64, emit: &mut dyn FnMut(SplineChord)) {
     for span in spline.spans() {
         let (from, to) = (spline.knots[span], spline.knots[span + 1]);
         let (count, bend) = count(spline, span, tolerance);
         let stray = bend / (8.0 * count * count);
         for piece in 1..=count as u64 {
             let at = from + (to - from) * piece as f64 / count;
-            emit(spline.blossom(span, |_| at), stray);
+            let end = spline.blossom(span, |_| at);
+            emit(SplineChord { span, at, end, stray });
         }
     }
 }
@@ -131,7 +144,7 @@ mod tests {
         let spline = wave();
         for tolerance in [1.0, 0.01, 0.001] {
             let mut ends = vec![(spline.poles[0].0, 0.0)];
-            flatten(&spline, tolerance, &mut |point, stray| ends.push((point, stray)));
+            flatten(&spline, tolerance, &mut |chord| ends.push((chord.end, chord.stray)));
             assert!(ends.iter().all(|(_, stray)| *stray <= tolerance));
             assert!((ends[ends.len() - 1].0 - spline.poles[6].0).norm() < 1e-12);
             // Every point of a fine sampling lies within the tolerance of some chord.
@@ -156,7 +169,7 @@ mod tests {
     fn chords_are_counted_before_they_are_made() {
         for tolerance in [1.0, 0.01, 0.001] {
             let mut made = 0;
-            flatten(&wave(), tolerance, &mut |_, _| made += 1);
+            flatten(&wave(), tolerance, &mut |_| made += 1);
             assert_eq!(chords(&wave(), tolerance), Some(made));
         }
         let points = vec![Vector3::zeros(), Vector3::x(), Vector3::y(), Vector3::z(), Vector3::x()];

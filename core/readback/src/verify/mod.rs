@@ -18,6 +18,7 @@ mod chop;
 mod cut_bounds;
 mod cut_path;
 mod detour;
+mod edge;
 mod fed_rapid;
 mod feed;
 mod feed_sum;

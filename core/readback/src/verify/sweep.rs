@@ -132,6 +132,7 @@ impl<C: Course> Verifier<'_, C> {
         if self.keeps_to_the_course(motion, places, &begun) {
             self.found.cuts += 1;
             self.compare(motion, places);
+            self.look_where_the_edge_points(motion, places, &begun);
         }
         self.begun = begun;
     }

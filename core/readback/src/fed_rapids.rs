@@ -2,8 +2,9 @@
 //!
 //! Where the machine file has it so ([`Machine::rapid`]), a rapid stands in a program as a feed move at the highest feed
 //! that its axes hold. Nothing in such a block says what it is: a cut that an axis holds up is as fast. So it is a rapid
-//! where the spindle stands, in a program that turns it elsewhere; any other stays a cut for who knows this program
-//! alone, and may be a rapid for who holds it against another that has one there.
+//! where the spindle stands, in a program that turns it elsewhere, and where the word that goes with the way of the tip in
+//! cuts stands still; any other stays a cut for who knows this program alone, and may be a rapid for who holds it against
+//! another that has one there.
 
 use std::io::{Read, Seek};
 
@@ -108,11 +109,13 @@ impl<P> FedRapids<P> {
             if !plain
                 || motion.way.is_curved()
                 || self.kept && !motion.state.tcp
+                || motion.along == Some(true)
                 || !is_so_fast(axes, machine, motion, 0.0) && !comes_from_anywhere(machine, motion)
             {
                 continue;
             }
-            if self.turns && motion.state.spindle == SpindleState::Off {
+            let stands = self.turns && motion.state.spindle == SpindleState::Off;
+            if stands || motion.along == Some(false) {
                 motion.kind = MotionKind::Rapid;
                 motion.feed = 0.0;
                 continue;

@@ -40,6 +40,9 @@ pub struct Motion {
     /// Feed of the tip against the part, mm/min, as the program states it; of a thread the pitch times the speed; zero
     /// for a rapid and where the program states none.
     pub feed: f64,
+    /// F at which a rapid goes where G0 goes at F, mm/min, or degrees where rotary axes alone turn; zero elsewhere and where
+    /// the program states none.
+    pub rapid_feed: f64,
     /// How long it takes at the feed that the program states, minutes, no limit of any axis regarded; of a rapid at the
     /// axes' largest feeds, zero where the machine file names none.
     pub minutes: f64,
@@ -60,6 +63,9 @@ pub struct Motion {
     pub led: u32,
     /// At feed, and as fast as a rapid of a machine whose rapids may stand so ([`crate::FedRapids`]).
     pub fast: bool,
+    /// Whether the word that goes with the way of the tip in cuts (`[word.E]`) goes along at feed; none where the machine has
+    /// no such word, and where the way is too short to tell.
+    pub along: Option<bool>,
     /// What holds while it goes on.
     pub state: Arc<MachineState>,
 }

@@ -13,6 +13,7 @@ use post_machine::wait_rule::WaitRule;
 use post_plugin::{Language, Lengths};
 
 use super::ReadReport;
+use super::along::AlongStand;
 use super::block_words::bit;
 use super::face::FaceWords;
 use super::frame::{CoordinateFrame, FrameStack};
@@ -178,7 +179,7 @@ impl ControlState {
             number: None,
             report: ReadReport::default(),
             done: Vec::new(),
-            along: None,
+            along: AlongStand::default(),
             solvers: vec![(0.0, solver)],
         };
         control.stand(&start(machine));

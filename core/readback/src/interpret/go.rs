@@ -519,6 +519,10 @@ impl ControlState {
             from,
             to: self.at,
             feed,
+            rapid_feed: match self.modal.feed {
+                Some(feed) if kind == MotionKind::Rapid && self.lexicon.rapids_at_feed() => feed,
+                _ => 0.0,
+            },
             minutes,
             minutes_at_fastest: at_fastest,
             by_time: kind == MotionKind::Feed
@@ -529,6 +533,7 @@ impl ControlState {
             machine: self.in_machine,
             led: self.led,
             fast: false,
+            along: None,
             state,
         }));
     }

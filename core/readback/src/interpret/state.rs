@@ -10,6 +10,7 @@ use post_machine::wait_rule::WaitLines;
 use post_machine::word_map::WordMap;
 
 use super::ReadReport;
+use super::along::AlongStand;
 use super::cycles::CycleState;
 use super::frame::{CoordinateFrame, FrameStack};
 use super::splines::OpenSpline;
@@ -117,8 +118,8 @@ pub(super) struct ControlState {
     pub report: ReadReport,
     /// What was done since it was taken last.
     pub done: Vec<BlockEffect>,
-    /// The word that goes with the way of the tip, as it was written last.
-    pub(super) along: Option<f64>,
+    /// The word that goes with the way of the tip.
+    pub(super) along: AlongStand,
     /// Solvers by length, so that none is made twice.
     pub(super) solvers: Vec<(f64, Arc<Solver>)>,
 }

@@ -6,6 +6,9 @@ use super::track::ElementKind;
 use crate::course::Course;
 use crate::{Motion, MotionKind, fed_rapids};
 
+/// Share of a feed by which two that are the same may differ.
+const ROUNDED_FEED: f64 = 1e-6;
+
 impl<C: Course> Verifier<'_, C> {
     /// A first point that the program comes to at feed. False if the motion is no such.
     pub(super) fn reaches_at_feed(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
@@ -72,6 +75,35 @@ impl<C: Course> Verifier<'_, C> {
                 || from_anywhere())
     }
 
+    /// Where G0 goes at F, each rapid has the F that the dialect writes.
+    pub(super) fn look_at_rapid_feed(&mut self, motion: &Motion) {
+        let Some(due) = self.rules.rapid_feed else {
+            return;
+        };
+        let feed = motion.rapid_feed;
+        if libm::fabs(feed - due) <= self.rules.feed_place.max(ROUNDED_FEED * due) {
+            return;
+        }
+        let message = format!("G0 goes at F, and that is not the {due} of the dialect's rapids");
+        let told = match feed > 0.0 {
+            true => format!("{message}: F{feed:.0}"),
+            false => format!("{message}: none is said"),
+        };
+        self.limit_fault("rapid", message, told, motion, 0, libm::fabs(feed - due));
+    }
+
+    /// The word that goes with the way of the tip does so in cuts, and in no rapid.
+    pub(super) fn goes_along(&mut self, motion: &Motion, cuts: bool) {
+        let Some(word) = self.machine.along.as_ref().filter(|_| motion.along == Some(!cuts)) else {
+            return;
+        };
+        let message = match cuts {
+            true => format!("{} stands still in a cut of the CL file", word.name),
+            false => format!("{} goes along a rapid of the CL file", word.name),
+        };
+        self.fault("nc-along", message, Some(motion), None, None);
+    }
+
     /// The machine file has rapids as feed moves, or there are none in the mode that the control is in.
     fn has_linear_rapids(&self, motion: &Motion) -> bool {
         let state = &motion.state;
@@ -81,6 +113,7 @@ impl<C: Course> Verifier<'_, C> {
     /// A rapid of the course is made at feed: where the machine file has it so, as fast as the axes hold.
     fn rapid_at_feed(&mut self, motion: &Motion, cl_line: u64) {
         self.found.rapids_at_feed += 1;
+        self.goes_along(motion, false);
         let feed = motion.feed;
         if !self.has_linear_rapids(motion) {
             let message = "a rapid of the CL file is made at feed".to_owned();

@@ -92,6 +92,8 @@ pub struct VerifyRules {
     pub least_minutes: f64,
     /// A rapid may be made at the highest feed that its axes hold ([`Machine::rapid`]).
     pub linear_rapids: bool,
+    /// F of every rapid, mm/min, where G0 goes at F; none elsewhere.
+    pub rapid_feed: Option<f64>,
     /// The last place of a printed feed, mm/min: it is rounded down.
     pub feed_place: f64,
     /// The last place of a printed F by time, 1/min.
@@ -155,6 +157,7 @@ impl VerifyRules {
             lengths: None,
             least_minutes: 0.0,
             linear_rapids: machine.rapid(false) == Rapid::Linear,
+            rapid_feed: None,
             feed_place: 0.0,
             time_place: 0.0,
             planned: false,
@@ -473,6 +476,7 @@ impl<'m, C: Course> Verifier<'m, C> {
                 self.settle();
                 self.found.rapids += 1;
                 self.set_kind("rapid");
+                self.look_at_rapid_feed(motion);
                 self.rapid(motion, &places);
             }
             MotionKind::Feed | MotionKind::Thread => {

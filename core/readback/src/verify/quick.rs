@@ -73,7 +73,7 @@ impl<C: Course> Verifier<'_, C> {
     /// and nothing is done then.
     #[inline]
     pub(super) fn goes_on(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
-        if !self.quick.on || motion.kind != MotionKind::Feed {
+        if !self.quick.on || motion.kind != MotionKind::Feed || motion.along == Some(false) {
             return false;
         }
         let &[from, to] = places else {

@@ -127,6 +127,7 @@ impl<C: Course> Verifier<'_, C> {
     fn cut(&mut self, motion: &Motion, places: &[ToolPlace]) {
         self.next = None;
         self.set_kind("cut");
+        self.goes_along(motion, true);
         let mut begun = std::mem::take(&mut self.begun);
         begun.clone_from(&self.reach);
         if self.keeps_to_the_course(motion, places, &begun) {

@@ -66,6 +66,8 @@ fn motion(state: &Arc<MachineState>, way: Interpolation, from: Joints, to: Joint
         machine: false,
         led: u32::MAX,
         fast: false,
+        along: None,
+        rapid_feed: 0.0,
         state: Arc::clone(state),
     }
 }

@@ -102,6 +102,8 @@ fn program(
             machine: false,
             led: u32::MAX,
             fast: false,
+            along: None,
+            rapid_feed: 0.0,
             state: Arc::clone(state),
         })
     });

@@ -193,6 +193,8 @@ impl Does {
             machine: false,
             led: u32::MAX,
             fast: false,
+            along: None,
+            rapid_feed: 0.0,
             state: Arc::clone(&self.state),
         }));
         self.at = to;

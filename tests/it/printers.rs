@@ -7,7 +7,7 @@ use std::fs;
 
 use nalgebra::{Rotation3, Vector3};
 
-use crate::common::{command, root, run};
+use crate::common::{Run, command, root, run};
 
 /// A bead that winds up a dome, the nozzle leaning half as much.
 const LIST: &str = "tests/printing/dome.csv";
@@ -19,6 +19,9 @@ const FILAMENT: f64 = 0.0333;
 const U_LINE: f64 = -25.0;
 const MOST: [(&str, f64); 5] =
     [("X", 12_000.0), ("Y", 12_000.0), ("Z", 750.0), ("U", 5000.0), ("V", 12_000.0)];
+
+/// Filament for the way of the first rapid at feed, 12.74 mm, had it been a bead.
+const RAPID: f64 = 0.424;
 
 /// F of G0.
 const TRAVEL: f64 = 5000.0;
@@ -223,6 +226,167 @@ fn a_bead_round_a_dome_is_laid_as_the_list_has_it() {
                 (one.tips.last().unwrap() - tip).norm() < 0.003 && one.axis.angle(axis) < 1e-3
             };
             assert!(ends.any(|one| there(&one)), "{name}: nothing comes to {tip:?}");
+        }
+    }
+}
+
+/// What `post VERB` says of a program for the list.
+fn judged(dialect: &str, verb: &str, program: &str) -> Run {
+    let machine = ["-m", "printer-open5x", "--tool-length", "0", "--dialect", dialect];
+    let against: &[&str] = match verb {
+        "verify" => &["--against", LIST],
+        _ => &[],
+    };
+    let done = run(command().arg(verb).args(machine).args(against).arg("-"), program.as_bytes());
+    Run { err: format!("{}{}", done.out, done.err), ..done }
+}
+
+/// The program without the words of a letter in the lines that `of` chooses.
+fn without(program: &str, letter: char, of: impl Fn(usize) -> bool) -> String {
+    let lines = program.lines().enumerate().map(|(index, line)| {
+        let words = line.split(' ').filter(|word| !(of(index) && word.starts_with(letter)));
+        words.collect::<Vec<_>>().join(" ") + "\n"
+    });
+    lines.collect()
+}
+
+/// A bead without its E, and E in a rapid: however rapids are written, and in blocks so short that E alone tells nothing.
+#[test]
+fn what_is_not_pushed_out_along_a_bead_is_told() {
+    for firmware in &FIRMWARE {
+        let name = firmware.name;
+        let program = posted(name);
+        let right = judged(name, "verify", &program);
+        assert_eq!(right.code, 0, "{name}: {}{}", right.out, right.err);
+        let beads = program.lines().enumerate();
+        let beads = beads.filter(|(_, line)| line.starts_with("G1 ") && line.contains(" E"));
+        let beads: Vec<usize> = beads.map(|(index, _)| index).collect();
+        let middle = beads[beads.len() / 2];
+        let last = beads[beads.len() - 1];
+        for changed in [
+            without(&program, 'E', |index| beads.contains(&index)),
+            without(&program, 'E', |index| index >= middle && beads.contains(&index)),
+            without(&program, 'E', |index| index == last),
+        ] {
+            let done = judged(name, "verify", &changed);
+            assert_eq!(done.code, 1, "{name}: {}", done.out);
+            assert!(done.err.contains("E stands still in a cut of the CL file"), "{}", done.err);
+        }
+        // A rapid at feed, and all E words behind it moved on by as much.
+        let rapid = program.lines().position(|line| {
+            line.starts_with("G1 ") && !line.contains(" E") && line.contains(" U")
+        });
+        let rapid = rapid.unwrap();
+        let on = |(index, line): (usize, &str)| {
+            let words = line.split(' ').map(|word| match word.strip_prefix('E') {
+                Some(pushed) if index > rapid => {
+                    format!("E{:.3}", pushed.parse::<f64>().unwrap() + RAPID)
+                }
+                _ => word.to_owned(),
+            });
+            let line = words.collect::<Vec<_>>().join(" ");
+            if index == rapid {
+                line.replace(" F", &format!(" E{RAPID} F")) + "\n"
+            } else {
+                line + "\n"
+            }
+        };
+        let pushed: String = program.lines().enumerate().map(on).collect();
+        let done = judged(name, "verify", &pushed);
+        assert_eq!(done.code, 1, "{name}");
+        assert!(done.err.contains("E goes along a rapid of the CL file"), "{name}: {}", done.err);
+    }
+}
+
+/// Rounding alone lets each of these blocks pass without its E, and not all of them.
+#[test]
+fn what_short_blocks_push_out_is_told_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = folder.path().join("short.csv");
+    let rows = (0..=100).map(|step| format!("{:.3},0,10,\n", 0.02 * f64::from(step)));
+    let rows: String = rows.collect();
+    let text = format!("feed,600\nx,y,z,rapid\n20,20,60,1\n0,0,60,1\n0,0,10,1\n{rows}2,0,60,1\n");
+    fs::write(&list, text).unwrap();
+    let machine = ["-m", "printer-open5x", "--tool-length", "0"];
+    let made = run(command().args(["-q", "-o", "-"]).args(machine).arg(&list), b"");
+    assert_eq!(made.code, 0, "{}", made.err);
+    let verify = |program: &str| {
+        let against = command().arg("verify").args(machine).arg("--against").arg(&list).arg("-");
+        run(against, program.as_bytes())
+    };
+    let right = verify(&made.out);
+    assert_eq!(right.code, 0, "{}{}", right.out, right.err);
+    let bead =
+        |line: &str| line.contains(" E") && !line.starts_with("G0") && !line.starts_with("G92");
+    let beads: Vec<bool> = made.out.lines().map(bead).collect();
+    assert!(beads.iter().filter(|bead| **bead).count() > 50, "{}", made.out);
+    let none = verify(&without(&made.out, 'E', |index| beads[index]));
+    assert!(none.code == 1 && none.err.contains("E stands still in a cut"), "{}", none.err);
+    // Half of it.
+    let half = |word: &str| match word.strip_prefix('E') {
+        Some(pushed) => format!("E{:.3}", pushed.parse::<f64>().unwrap() / 2.0),
+        None => word.to_owned(),
+    };
+    let lines = made.out.lines().map(|line| {
+        let words: Vec<String> = line.split(' ').map(half).collect();
+        words.join(" ") + "\n"
+    });
+    let half = verify(&lines.collect::<String>());
+    assert!(half.code == 1 && half.err.contains("nc-along"), "{}", half.err);
+}
+
+/// A line is one command and its parameters there: what the firmware would drop is no move, and what it would do otherwise is
+/// not followed.
+#[test]
+fn what_a_firmware_makes_otherwise_of_a_line_is_told() {
+    for firmware in &FIRMWARE {
+        let name = firmware.name;
+        let program = posted(name);
+        let lines: Vec<&str> = program.lines().collect();
+        let bead = lines.iter().rposition(|line| line.contains(" E")).unwrap();
+        let with = |changed: &dyn Fn(&str) -> String| -> String {
+            let line = |(index, line): (usize, &&str)| match index == bead {
+                true => changed(line) + "\n",
+                false => format!("{line}\n"),
+            };
+            lines.iter().enumerate().map(line).collect()
+        };
+        let ahead = |word: &str| with(&|line| format!("{word}\n{line}"));
+        for (what, changed) in [
+            ("begins a line", with(&|line| line.replacen("G1 ", "", 1))),
+            ("begins a line", with(&|line| line.replacen("G1 ", "F600 G1 ", 1))),
+            ("stands behind the command", with(&|line| format!("G90 {line}"))),
+            ("stands behind the command", with(&|line| format!("{line} M400"))),
+            ("begins a line", ahead("F600")),
+            ("M30", ahead("M30 x.gcode")),
+            ("is not run", ahead("M30")),
+            ("is not run", ahead("M83")),
+            ("is not run", ahead("M220 S50")),
+            ("no word that is known", ahead("G81 X0 Y0 Z0 R5 F100")),
+        ] {
+            for verb in ["verify", "read", "lint"] {
+                let done = judged(name, verb, &changed);
+                assert_eq!(done.code, 1, "{name} {verb} {what}: {}{}", done.out, done.err);
+                assert!(done.err.contains(what), "{name} {verb}: {}", done.err);
+            }
+        }
+        let shifted = judged(name, "verify", &ahead("G92 Z0"));
+        assert_eq!(shifted.code, 1, "{name}: {}", shifted.err);
+    }
+}
+
+/// G0 goes at F: another is another travel, and none is that of the beads.
+#[test]
+fn a_rapid_at_another_feed_is_told() {
+    for firmware in &FIRMWARE {
+        let name = firmware.name;
+        let program = posted(name);
+        let rapid = program.lines().filter(|line| line.starts_with("G0 ")).last().unwrap();
+        for feed in ["", " F50.", " F9000."] {
+            let other = rapid.replace(" F5000.", feed);
+            assert_ne!(other, rapid);
+            let done = judged(name, "verify", &program.replace(rapid, &other));
+            assert!(done.code == 1 && done.err.contains("G0 goes at F"), "{name}: {}", done.err);
         }
     }
 }

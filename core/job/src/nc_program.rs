@@ -58,8 +58,7 @@ impl NcControl {
         offsets: Offsets,
         limits: Limits,
     ) -> Self {
-        let lexicon = Lexicon::new(spoken.language, spoken.writes, &spoken.words)
-            .with_rapids(spoken.rapids_at_feed);
+        let lexicon = Lexicon::new(spoken.language, spoken.writes, &spoken.words);
         Self { machine: machine.clone(), spoken, lexicon, offsets, own_lines: Vec::new(), limits }
     }
 
@@ -160,8 +159,8 @@ pub struct DialectVocabulary {
     pub writes: Capabilities,
     /// Largest F by time, 1/min.
     pub most_inverse_time: Option<f64>,
-    /// G0 goes at F.
-    pub rapids_at_feed: bool,
+    /// F of rapids where G0 goes at F, program units a minute.
+    pub rapid_feed: Option<f64>,
     /// Decimals of a feed a minute.
     pub feed_decimals: u8,
     /// Decimals of a feed by time, if it writes any.
@@ -203,7 +202,7 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<DialectVocabulary, F
         language: dialect.format().language,
         writes: dialect.capabilities(),
         most_inverse_time: dialect.format().most_inverse_time,
-        rapids_at_feed: dialect.format().rapid_feed.is_some(),
+        rapid_feed: dialect.format().rapid_feed,
         feed_decimals: dialect.format().feed,
         inverse_time_decimals: dialect.format().inverse_time,
     })

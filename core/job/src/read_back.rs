@@ -7,7 +7,8 @@ use std::sync::Arc;
 use std::thread;
 
 use post_host::Finder;
-use post_machine::description::{InverseTime, Machine, OutputUnits, Rapid, TextPlace};
+use post_machine::axis_words::unit_length;
+use post_machine::description::{InverseTime, Machine, Rapid, TextPlace};
 use post_machine::diagnostic::{Diagnostic, Severity, SourceFiles, SourcePlace};
 use post_plugin::{Lengths, Meaning};
 use post_posting::program::{DefaultSpindle, UnknownWordPolicy};
@@ -173,11 +174,7 @@ pub fn offsets(arguments: &JobSettings, machine: &Machine, tools: &[ClTool]) -> 
 
 /// The last place of a feed a minute, mm/min.
 fn feed_place(machine: &Machine, decimals: u8) -> f64 {
-    let unit = match machine.control.units {
-        OutputUnits::Mm => 1.0,
-        OutputUnits::Inch => 25.4,
-    };
-    unit * libm::pow(0.1, f64::from(decimals))
+    unit_length(machine.control.units) * libm::pow(0.1, f64::from(decimals))
 }
 
 /// The last place of an F by time, 1/min; zero where the dialect writes none.
@@ -465,6 +462,7 @@ fn rules(reading: &ReadingSetup<'_>, control: &NcControl, tools: &[ClTool]) -> V
         own: reading.own && machine.program.text(TextPlace::Retract).is_none(),
         own_stops: own_stops(machine, control),
         feed_place: feed_place(machine, spoken.feed_decimals),
+        rapid_feed: spoken.rapid_feed.map(|feed| feed * unit_length(machine.control.units)),
         time_place: time_place(machine, spoken.inverse_time_decimals),
         linear_rapids: machine.rapid(spoken.rapids_pass()) == Rapid::Linear,
         least_minutes: spoken.most_inverse_time.map_or(0.0, |most| 1.0 / most),

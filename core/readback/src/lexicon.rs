@@ -66,8 +66,6 @@ pub struct Lexicon {
     path_modes: bool,
     /// A feed a minute counts along all axes together where no tip is kept.
     all_axes: bool,
-    /// G0 goes at F.
-    rapids_at_feed: bool,
     /// Bits of the modes that the dialect has words for.
     modes: u16,
     /// A cycle returns to a level that the program names.
@@ -85,8 +83,7 @@ impl Lexicon {
             g: vec![0; G_CODES],
             m: vec![0; M_CODES],
             senses: vec![WordMeaning::Unknown],
-            syntax: syntax(words, language),
-            rapids_at_feed: false,
+            syntax: syntax(words, language, writes),
             all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
             return_levels: words.iter().any(|word| word.meaning == Meaning::ReturnLevel),
             speed_goes_with_feed: language == Language::Names,
@@ -107,8 +104,10 @@ impl Lexicon {
                 _ => ModalGroup::named(words),
             },
         };
-        for (word, sense) in common::words(language) {
-            lexicon.add_sense(word, sense);
+        if !lexicon.commands_a_line() {
+            for (word, sense) in common::words(language) {
+                lexicon.add_sense(word, sense);
+            }
         }
         for VocabularyWord { word, meaning } in words {
             match language {
@@ -120,14 +119,14 @@ impl Lexicon {
         lexicon
     }
 
-    /// Of a control whose G0 goes at F, if `at_feed`.
-    pub fn with_rapids(self, at_feed: bool) -> Self {
-        Self { rapids_at_feed: at_feed, ..self }
+    /// G0 goes at F.
+    pub fn rapids_at_feed(&self) -> bool {
+        self.writes.has(Capabilities::RAPIDS_AT_FEED)
     }
 
-    /// G0 goes at F.
-    pub(crate) fn rapids_at_feed(&self) -> bool {
-        self.rapids_at_feed
+    /// A line is one command and its parameters.
+    pub(crate) fn commands_a_line(&self) -> bool {
+        self.writes.has(Capabilities::COMMAND_A_LINE)
     }
 
     /// What the reader of its programs must know.
@@ -164,6 +163,12 @@ impl Lexicon {
     /// A contour is compensated by the radius in a register, D.
     pub fn has_radius_registers(&self) -> bool {
         !self.writes.has(Capabilities::TOOL_TABLE)
+    }
+
+    /// Some word turns a spindle.
+    pub fn has_spindle(&self) -> bool {
+        self.senses.contains(&WordMeaning::Means(Meaning::SpindleClockwise))
+            || self.language == Language::Joints
     }
 
     /// A word changes the tool, M6 or another; else T does.
@@ -414,7 +419,7 @@ fn beside(word: &str) -> Option<(u8, Option<f64>)> {
 }
 
 /// What a reader must know.
-fn syntax(words: &[VocabularyWord], language: Language) -> NcSyntax {
+fn syntax(words: &[VocabularyWord], language: Language, writes: Capabilities) -> NcSyntax {
     let first = |meaning: Meaning| {
         let mut words = words.iter().filter(|word| word.meaning == meaning);
         words.next().and_then(|word| word.word.chars().next())
@@ -433,7 +438,8 @@ fn syntax(words: &[VocabularyWord], language: Language) -> NcSyntax {
         },
         line_remarks,
         enclosed_remarks: first(Meaning::RemarkOpen).zip(first(Meaning::RemarkClose)),
-        hash_variables: matches!(language, Language::Macro | Language::Rs274),
+        hash_variables: matches!(language, Language::Macro | Language::Rs274)
+            && !writes.has(Capabilities::COMMAND_A_LINE),
         instructions: language == Language::Instructions,
     }
 }

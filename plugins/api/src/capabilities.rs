@@ -156,6 +156,12 @@ capabilities! {
     51 FEED_LONGEST_TURN;
     /// `Park` does not come: the control has no words for positions in machine coordinates.
     52 NO_PARK;
+    /// G0 goes at F, as G1 does: `rapid_feed` of the format says at which.
+    53 RAPIDS_AT_FEED;
+    /// A line is one command, which stands first, and its parameters: no word of motion holds on to the next line, and what
+    /// stands in front of a command or behind it is not run as words of a block. The dialect names every word that its
+    /// control reads: what others of its language have in common does not hold.
+    54 COMMAND_A_LINE;
 }
 
 impl Capabilities {

@@ -80,7 +80,7 @@ impl Plugin {
                 (DialectAccess::Library(library), format, capabilities)
             }
         };
-        check_format(&format, words).map_err(nonsense)?;
+        check_format(&format, capabilities, words).map_err(nonsense)?;
         Ok(OpenedDialect { plugin: self.name.clone(), access, format, capabilities })
     }
 }
@@ -122,7 +122,7 @@ pub(crate) fn judged_format(
 }
 
 /// What a format says must be possible.
-fn check_format(format: &Format, words: usize) -> Result<(), String> {
+fn check_format(format: &Format, writes: Capabilities, words: usize) -> Result<(), String> {
     if format.words.len() != words {
         return Err(format!(
             "its format has {} axis words, the program has {words}",
@@ -144,6 +144,9 @@ fn check_format(format: &Format, words: usize) -> Result<(), String> {
     }
     if let Some(feed) = format.rapid_feed.filter(|feed| !(feed.is_finite() && *feed > 0.0)) {
         return Err(format!("its feed of rapids is {feed}"));
+    }
+    if format.rapid_feed.is_some() != writes.has(Capabilities::RAPIDS_AT_FEED) {
+        return Err("RAPIDS_AT_FEED and `rapid_feed` of its format go together".to_owned());
     }
     let extension = &format.extension;
     if extension.len() > 16 || !extension.bytes().all(|byte| byte.is_ascii_alphanumeric()) {

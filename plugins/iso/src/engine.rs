@@ -124,6 +124,12 @@ impl Engine {
         if table.sign_is_way {
             writes |= Capabilities::SIGN_IS_WAY;
         }
+        if table.rapids_at_feed {
+            writes |= Capabilities::RAPIDS_AT_FEED;
+        }
+        if table.command_a_line {
+            writes |= Capabilities::COMMAND_A_LINE;
+        }
         if table.feed_all_axes {
             writes |= Capabilities::FEED_ALL_AXES;
         }

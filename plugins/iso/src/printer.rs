@@ -134,7 +134,7 @@ impl Table {
         },
         safe: "G90",
         rapids_at_feed: true,
-        motion_in_every_block: true,
+        command_a_line: true,
         offset: Offset { known: str::is_empty, range: "none", word: |_| None, at_start: false },
         length: Length { on: "", off: "", ..Table::ISO.length },
         machine: "",
@@ -170,14 +170,26 @@ fn semicolon(text: &str) -> String {
     format!("; {}", ascii(text).replace(['*', '\n'], " "))
 }
 
-/// Words that all of them read beside those that are written.
+/// Words that all of them read beside those that are written, and what others of the language mean by a word of theirs. M30
+/// deletes a file of the card, and the job goes on.
 const PRINTER_WORDS: &[(&str, Meaning)] = &[
     (";", Meaning::Remark),
+    ("G2", Meaning::ArcClockwise),
+    ("G3", Meaning::ArcCounterClockwise),
+    ("G28", Meaning::ReferenceReturn),
     ("G92", Meaning::SetPosition),
+    ("M17", Meaning::Nothing),
+    ("M23", Meaning::NotFollowed),
+    ("M24", Meaning::NotFollowed),
+    ("M30", Meaning::NotFollowed),
+    ("M32", Meaning::NotFollowed),
+    ("M73", Meaning::Nothing),
     ("M82", Meaning::Nothing),
     ("M83", Meaning::NotFollowed),
     ("M18", Meaning::Nothing),
     ("M84", Meaning::Nothing),
+    ("M92", Meaning::NotFollowed),
+    ("M98", Meaning::NotFollowed),
     ("M104", Meaning::Nothing),
     ("M104 S", Meaning::Nothing),
     ("M104 T", Meaning::Nothing),
@@ -191,7 +203,10 @@ const PRINTER_WORDS: &[(&str, Meaning)] = &[
     ("M140 S", Meaning::Nothing),
     ("M190", Meaning::Nothing),
     ("M190 S", Meaning::Nothing),
+    ("M206", Meaning::NotFollowed),
     ("M220", Meaning::NotFollowed),
     ("M221", Meaning::NotFollowed),
+    ("M290", Meaning::NotFollowed),
     ("M400", Meaning::Nothing),
+    ("M600", Meaning::NotFollowed),
 ];

@@ -46,8 +46,9 @@ pub struct Table {
     pub feed_all_axes: bool,
     /// G0 goes at F: each rapid has that of the option `travel_feed`, and the next cut its own again.
     pub rapids_at_feed: bool,
-    /// A block begins with its command: the word of motion stands in each that moves, and S behind that of the spindle.
-    pub motion_in_every_block: bool,
+    /// A line is one command and its parameters: the word of motion stands in each that moves, and S behind that of the
+    /// spindle.
+    pub command_a_line: bool,
     /// The sign of the word of an endless rotary axis can be its way.
     pub sign_is_way: bool,
     /// Largest block number; past it they begin anew.
@@ -467,7 +468,7 @@ impl Table {
         cancel_behind_length: false,
         feed_all_axes: false,
         rapids_at_feed: false,
-        motion_in_every_block: false,
+        command_a_line: false,
         sign_is_way: false,
         largest_number: 99_999,
         trim: false,

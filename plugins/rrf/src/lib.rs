@@ -2,9 +2,11 @@
 //!
 //! What it assumes about the control stands in `docs/src/plugin-author/controls.md`.
 
+use std::borrow::Cow;
+
 use post_iso::{Control, Engine, Iso, MotionCodes, Offset, Printer, Table, offset_of_six, options};
 use post_plugin::{
-    Capabilities, Event, Feed, Meaning, OptionSpec, Setup, VocabularyWord, export_dialect,
+    Capabilities, Event, Feed, Meaning, OptionSpec, Setup, VocabularyWord, export_dialect, quantise,
 };
 
 struct RepRapFirmware {
@@ -60,8 +62,9 @@ impl Control for RepRapFirmware {
         };
         match feed {
             Some(Feed::PerMinute(feed)) if feed < self.least_feed => Err(format!(
-                "F{feed} is slower than RepRapFirmware goes, F{} (`least_feed`, M203 I): the bead would come too fast. \
+                "F{} is slower than RepRapFirmware goes, F{} (`least_feed`, M203 I): the bead would come too fast. \
                  The linear axes nearly stand while others turn: a larger feed, or another way of the part on the machine",
+                quantise(feed, 3),
                 self.least_feed
             )),
             _ => Ok(Printer::write(event, engine, out)),
@@ -73,7 +76,10 @@ impl Control for RepRapFirmware {
     }
 
     fn vocabulary(&self, engine: Vec<VocabularyWord>) -> Vec<VocabularyWord> {
-        self.printer.vocabulary(engine)
+        let mut words = self.printer.vocabulary(engine);
+        let end = |word| VocabularyWord { word: Cow::Borrowed(word), meaning: Meaning::End };
+        words.extend(ENDS.map(end));
+        words
     }
 }
 
@@ -82,7 +88,7 @@ const OPTIONS: &[OptionSpec] = &[
     Printer::MILL,
     OptionSpec::number(
         "least_feed",
-        (0.0, 1000.0),
+        (0.0, 300.0),
         0.6,
         "F below which the firmware does not go, mm/min: that of M203 I. 30 where config.g says nothing.",
     ),
@@ -102,7 +108,10 @@ const RELIES: &[&str] = &[
     "config.g has M203 I0.6: without it no move is slower than 30 mm/min, and beads come too fast",
 ];
 
-/// Words that it reads and that are not written here. M0 and M2 end the job.
+/// Each ends the job: no stop that goes on.
+const ENDS: [&str; 3] = ["M0", "M1", "M2"];
+
+/// Words that it reads and that are not written here.
 const OWN: &[(&str, Meaning)] =
     &[("G10", Meaning::TableData), ("G4 S", Meaning::DwellSeconds), ("M116", Meaning::Nothing)];
 

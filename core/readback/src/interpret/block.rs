@@ -3,7 +3,7 @@
 //! Whatever order the words of a block are written in, a control takes them in one order: units and modes, feed and
 //! speed, tool, spindle and coolant on, compensations, zeros, the motion, and last what ends something.
 
-use post_grammar::nc::NcBlock;
+use post_grammar::nc::{NcBlock, NcItem, NcValue, NcWord};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{AxisWords, Language, Meaning};
 
@@ -100,6 +100,9 @@ pub(super) fn run(
     words: &mut BlockWords,
 ) -> Result<(), Box<Diagnostic>> {
     control.gather(block, words)?;
+    if control.lexicon.commands_a_line() {
+        control.is_one_command(block)?;
+    }
     for remark in &block.remarks {
         control.remark(remark);
     }
@@ -136,6 +139,52 @@ pub(super) fn run(
 }
 
 impl ControlState {
+    /// Of a control whose line is a command and its parameters: one stands first, and no other behind it but where the first
+    /// says what the second counts from (G53).
+    #[cold]
+    fn is_one_command(&self, block: &NcBlock) -> Result<(), Box<Diagnostic>> {
+        let is_command = |letter| matches!(letter, b'G' | b'M');
+        let written = |word: &NcWord| match &word.value {
+            NcValue::Number(number) => format!("{}{}", char::from(word.letter), number.value),
+            _ => char::from(word.letter).to_string(),
+        };
+        let [first, others @ ..] = block.items.as_slice() else {
+            return Ok(());
+        };
+        let help = "a line of this control is one command and its parameters";
+        let refused = |message: String| {
+            Err(self.placed(Diagnostic::error("nc-word", message).help(help)).boxed())
+        };
+        let mut in_machine = match first {
+            NcItem::Word(word) if is_command(word.letter) || word.letter == b'T' => {
+                let code = match &word.value {
+                    NcValue::Number(number) if word.letter == b'G' => GCode::of(number.value),
+                    _ => None,
+                };
+                let sense = code.map(|code| self.lexicon.g(code));
+                sense == Some(WordMeaning::Means(Meaning::MachineCoordinates))
+            }
+            NcItem::Word(word) => {
+                let message = format!("{} begins a line, which is no command", written(word));
+                return refused(message);
+            }
+            _ => return refused("the line begins with no command of a letter".to_owned()),
+        };
+        for item in others {
+            match item {
+                NcItem::Word(word)
+                    if is_command(word.letter) && !std::mem::take(&mut in_machine) =>
+                {
+                    let message =
+                        format!("{} stands behind the command of its line", written(word));
+                    return refused(message);
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
     /// A remark; one that names an operation says which.
     pub(super) fn remark(&mut self, remark: &str) {
         let text = remark.trim();

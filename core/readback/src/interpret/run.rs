@@ -89,7 +89,8 @@ impl ControlState {
         };
         let solver = &self.state.solver;
         let unfit = run.unfit.as_ref().is_some_and(|unfit| Arc::ptr_eq(unfit, solver));
-        if !plain || !counted || self.state.tcp && unfit {
+        // A block that begins with no command is no motion of every control.
+        if self.lexicon.commands_a_line() || !plain || !counted || self.state.tcp && unfit {
             return None;
         }
         let feed = bit(b'F');

@@ -89,11 +89,10 @@ pub fn lexicon(dialect: &str) -> Lexicon {
             words.push(VocabularyWord { word, meaning });
         }
     }
-    let printers = ["klipper", "rrf", "marlin"];
-    let least = if printers.contains(&dialect) { 35 } else { 50 };
-    assert!(words.len() > least, "{dialect}");
+    assert!(words.len() > 50, "{dialect}");
     let (language, writes) = match dialect {
-        "linuxcnc" | "grbl" | "klipper" | "rrf" | "marlin" => (Language::Rs274, Capabilities::NONE),
+        "linuxcnc" | "grbl" => (Language::Rs274, Capabilities::NONE),
+        "klipper" | "rrf" | "marlin" => (Language::Rs274, Capabilities::COMMAND_A_LINE),
         "siemens" => (Language::Names, Capabilities::TOOL_EDGES),
         "heidenhain" => (Language::Conversational, Capabilities::TOOL_TABLE),
         _ => (Language::Macro, Capabilities::NONE),

@@ -50,7 +50,7 @@ impl Engine {
         Ok(Engine {
             table,
             motion: MotionWriter::new(setup, codes, block, axes, style, feeds)
-                .in_full(table.motion_in_every_block, travel_feed(table, setup)),
+                .in_full(table.command_a_line, travel_feed(table, setup)),
             style: BlockStyle {
                 spaces: flag(setup, "spaces", true),
                 leading_zeros: flag(setup, "leading_zeros", false),

@@ -47,7 +47,7 @@ impl Engine {
                     SpindleSense::Clockwise => clockwise,
                     SpindleSense::CounterClockwise => counter,
                 };
-                let command_first = self.table.motion_in_every_block;
+                let command_first = self.table.command_a_line;
                 if command_first {
                     block.word(word);
                 }

@@ -31,7 +31,12 @@ impl Dialect for Watch {
     fn capabilities(&self) -> Capabilities {
         // It retracts and parks wherever it is sent.
         let all = CAPABILITIES.iter().map(|spec| spec.set);
-        let not = [Capabilities::RETRACT_SAID, Capabilities::CYCLE_NO_DWELL, Capabilities::NO_PARK];
+        let not = [
+            Capabilities::RETRACT_SAID,
+            Capabilities::CYCLE_NO_DWELL,
+            Capabilities::NO_PARK,
+            Capabilities::RAPIDS_AT_FEED,
+        ];
         let all = all.filter(|set| !not.contains(set));
         all.fold(Capabilities::NONE, |all, set| all | set)
     }

@@ -129,7 +129,8 @@ pub(super) fn commands(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault
     let pairs = COMMANDS.iter().chain(COMPENSATION).chain(if registers { REGISTERS } else { &[] });
     for pair in pairs {
         let compensation = matches!(pair.one, Event::Compensate(_));
-        if pen.leaves_out(&pair.one) || compensation && !compensates {
+        let without = pair.other.as_ref().is_some_and(|other| pen.leaves_out(other));
+        if without || pen.leaves_out(&pair.one) || compensation && !compensates {
             continue;
         }
         let write = |command: &Option<Event<'_>>| pen.write_around(command.as_slice(), pair.away);

@@ -4,15 +4,14 @@
 
 use post_host::{GivenValue, Plugin, PluginFault, ProgramSetup, ProgramWord};
 use post_plugin::{
-    Capabilities, Coolant, DialectSession as _, Event, Format, Lengths, Meaning, Spindle, Units,
-    WriteFault,
+    Coolant, DialectSession as _, Event, Format, Lengths, Meaning, Spindle, Units, WriteFault,
 };
 
 use super::Case;
 use super::commands::commands;
 use super::declared::declared;
 use super::options::{options_of, switches_of};
-use super::pen::{BEGIN, Pen, rounded};
+use super::pen::{BEGIN, Pen, rounded, wordless};
 use super::print::{edges, moves};
 use super::runs::runs;
 use super::sessions::{after_a_refusal, two_at_once, two_threads};
@@ -282,9 +281,7 @@ fn program(
 ) -> Result<Option<String>, PluginFault> {
     let positions = positions(format);
     let opened = Pen { plugin, setup, left_out: &[] };
-    if opened.open()?.capabilities().has(Capabilities::NO_PARK) {
-        left_out.push("Park");
-    }
+    left_out.extend(wordless(&mut opened.open()?));
     loop {
         let events = events(&positions, left_out);
         let pen = Pen { plugin, setup, left_out };

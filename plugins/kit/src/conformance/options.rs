@@ -34,17 +34,17 @@ fn values_of(
             let mut setup = pen.setup.clone();
             setup.options.retain(|(key, _)| key != spec.key);
             setup.options.push((spec.key.to_owned(), value));
-            let pen = Pen { setup: &setup, ..*pen };
             // A text has a meaning, which the kit cannot know; what is refused, is.
             let of_text = matches!(spec.kind, OptionKind::Text | OptionKind::Lines);
-            match pen.plugin.dialect(&setup) {
-                Ok(_) => {}
+            let left_out = match pen.left_out_under(&setup) {
+                Ok(names) => names,
                 Err(fault) if of_text && !fault.to_string().contains("panicked") => continue,
                 Err(fault) => {
                     case.note(format!("with {shown} it refuses to open: {fault}"));
                     continue;
                 }
-            }
+            };
+            let pen = Pen { setup: &setup, left_out: &left_out, ..*pen };
             let mut own = Case::named("");
             match pen.write(&[BEGIN, LITTLE, END])? {
                 Err(fault) if of_text && !fault.contains("panicked") => {}

@@ -2,7 +2,8 @@
 
 use post_host::{OpenedDialect, Plugin, PluginFault, ProgramSetup};
 use post_plugin::{
-    Batch, Capabilities, DialectSession as _, Event, Feed, Format, Spindle, WriteFault, quantise,
+    Batch, Capabilities, DialectSession as _, Event, Feed, Format, Meaning, Spindle, WriteFault,
+    quantise,
 };
 
 use super::pose::posed;
@@ -45,7 +46,41 @@ impl WrittenParts {
     }
 }
 
+/// Names of events that a dialect has no words for, as what it declares tells: programs do without them, and that it refuses
+/// them is right. None are told of one without a vocabulary.
+pub(super) fn wordless(opened: &mut OpenedDialect) -> Vec<&'static str> {
+    let writes = opened.capabilities();
+    let mut names = Vec::new();
+    if writes.has(Capabilities::NO_PARK) {
+        names.push("Park");
+        if writes.has(Capabilities::RETRACT_SAID) {
+            names.push("Retract");
+        }
+    }
+    let words = opened.vocabulary().unwrap_or_default();
+    let lacks = |meaning: &Meaning| !words.iter().any(|word| word.meaning == *meaning);
+    let needed = [
+        ("Spindle", Meaning::SpindleClockwise),
+        ("Coolant", Meaning::CoolantOn),
+        ("Stop", Meaning::Stop),
+        ("OptionalStop", Meaning::OptionalStop),
+    ];
+    if words.iter().any(|word| word.meaning == Meaning::Linear) {
+        names.extend(needed.iter().filter(|(_, meaning)| lacks(meaning)).map(|(name, _)| *name));
+    }
+    names
+}
+
 impl Pen<'_> {
+    /// Names of events that programs under another `setup` do without: those that were refused here, and those without
+    /// words there.
+    pub fn left_out_under(&self, setup: &ProgramSetup) -> Result<Vec<&'static str>, PluginFault> {
+        let here = wordless(&mut self.open()?);
+        let mut names = wordless(&mut self.plugin.dialect(setup)?);
+        names.extend(self.left_out.iter().filter(|name| !here.contains(name)));
+        Ok(names)
+    }
+
     pub fn open(&self) -> Result<OpenedDialect, PluginFault> {
         self.plugin.dialect(self.setup)
     }

@@ -17,6 +17,8 @@ const PLACE: [f64; 5] = [11.0, -21.5, 31.25, -17.0, 41.0];
 const LINEAR: [f64; 5] = [0.0, 12.345_678, -12.345_678, 123.456_789, 2_345.678_9];
 /// Degrees, past a turn too.
 const ROTARY: [f64; 5] = [0.0, 12.345_678, -179.999_999, 359.999_999, -1_234.567_89];
+/// A feed that every control has, a minute.
+const USUAL_FEED: f64 = 500.0;
 /// Lengths a minute, or 1/min.
 const FEEDS: [f64; 4] = [0.0, 1.25, 123.456_78, 5000.0];
 
@@ -121,7 +123,7 @@ pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
         if pen.leaves_out(&kind.event(&[], 0.0)) {
             continue;
         }
-        if let Err(fault) = alone(pen, &format, kind)? {
+        if let Err(fault) = alone(pen, &format, kind, USUAL_FEED)? {
             case.wrong(format!("{} is refused: {fault}", kind.name()));
             continue;
         }
@@ -140,13 +142,14 @@ pub(super) fn moves(pen: &Pen<'_>, case: &mut Case) -> Result<(), PluginFault> {
     Ok(())
 }
 
-/// Whether a move of this kind is written.
+/// Whether a move of this kind is written at a feed.
 fn alone(
     pen: &Pen<'_>,
     format: &Format,
     kind: MoveKind,
+    feed: f64,
 ) -> Result<Result<(), String>, PluginFault> {
-    let alone = TriedMove { kind, words: rounded(PLACE, format), feed: 500.0 };
+    let alone = TriedMove { kind, words: rounded(PLACE, format), feed };
     let before: &[Event<'_>] = if kind.comes_first() { &[] } else { &[at(&ELSEWHERE)] };
     Ok(pen.write(&[BEGIN, before, &[alone.event()]])?.map(drop))
 }
@@ -270,6 +273,10 @@ fn feed_fault(
     let unit = unit(decimals);
     for value in FEEDS {
         let value = quantise(value, decimals).max(unit);
+        // A control may have a least feed: what is slower is refused in words then.
+        if value < USUAL_FEED && alone(pen, format, kind, value)?.is_err() {
+            continue;
+        }
         let base = TriedMove { kind, words: rounded(PLACE, format), feed: value };
         for before in befores(format, &base) {
             for changed in [value + unit, value - unit] {

@@ -21,7 +21,7 @@ pub(super) fn after_a_refusal(pen: &Pen<'_>, case: &mut Case) -> Result<(), Plug
         let vectors = pen.writes_vectors()?;
         let mut session = pen.open()?;
         let mut batch = Batch::default();
-        for event in beginning().chain(last) {
+        for event in beginning(pen).chain(last) {
             batch.push(1, pen.told(event, vectors));
         }
         let (mut out, mut ends) = (String::new(), Vec::new());
@@ -124,8 +124,9 @@ pub(super) fn two_threads(
     Ok(())
 }
 
-fn beginning() -> impl Iterator<Item = Event<'static>> {
-    BEGIN.iter().copied().chain([at(&ELSEWHERE)])
+fn beginning(pen: &Pen<'_>) -> impl Iterator<Item = Event<'static>> {
+    let begin = BEGIN.iter().copied().filter(|event| !pen.leaves_out(event));
+    begin.chain([at(&ELSEWHERE)])
 }
 
 /// A session that cuts on and on.
@@ -167,7 +168,7 @@ impl<'p> CuttingSession<'p> {
         }
         let mut batch = Batch::default();
         if !self.begun {
-            for event in beginning() {
+            for event in beginning(self.pen) {
                 batch.push(1, self.pen.told(event, self.vectors));
             }
             self.begun = true;

@@ -6,8 +6,10 @@ mod template;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use post_machine::description::{self, OutputUnits, Tcp};
+use post_host::{Finder, OpenedDialect};
+use post_machine::description::{self, Machine, OutputUnits, Tcp};
 use post_machine::diagnostic::Diagnostic;
+use post_plugin::{Capabilities, DialectSession as _, OptionKind};
 
 use crate::flag_words::{TcpWord, UnitsWord};
 use post_cli::arguments::flag_values::{self, finite, word};
@@ -141,28 +143,44 @@ pub struct Choices {
     /// [`ARM_LENGTHS`], mm.
     pub arm: [f64; ARM_LENGTHS.len()],
     pub tolerance: f64,
+    pub control: ControlFacts,
+}
+
+/// What the dialect tells of its control.
+#[derive(Debug, Default)]
+pub struct ControlFacts {
+    /// It has no words for positions in machine coordinates.
+    pub no_positions: bool,
+    /// The option under which it has words for a spindle, where it has none without.
+    pub spindle_by: Option<String>,
+}
+
+/// A machine file, and the machine that it describes.
+struct Written {
+    text: String,
+    machine: Machine,
 }
 
 /// Writes the file.
 pub fn run(session: &Session, arguments: &NewArguments) -> Result<(), Failure> {
     let path = file(&arguments.name)?;
     refuse_existing(arguments, &path)?;
-    let choices = choices(arguments, &path)?;
+    let mut choices = choices(arguments, &path)?;
     let mut faults = unknown_axes(&choices);
     faults.extend(useless_flags(arguments, choices.class));
     if !faults.is_empty() {
         return Err(faults.into());
     }
-    let text = template::write(&choices);
-    // Nothing is written that the loader would refuse.
-    let source = description::Source { name: path.display().to_string(), text: text.clone() };
-    let machine =
-        description::load(source, &[], &mut |parent| Err(format!("there is no machine {parent}")))?;
+    let finder = plugin_finder::finder(session, &[])?;
+    let stranger = plugin_finder::not_built_in(&choices.dialect);
+    if stranger.is_none() {
+        ask_the_dialect(&mut choices, &path, &finder)?;
+    }
+    let Written { text, machine } = written(&choices, &path)?;
     let checked = job::derive(&machine, 0.0)?;
-    let stranger = plugin_finder::not_built_in(&machine.control.dialect);
     if stranger.is_none() {
         // Nor what `post check` would refuse.
-        job::try_opening(&machine, &plugin_finder::finder(session, &[])?, 0.0)?;
+        job::try_opening(&machine, &finder, 0.0)?;
     }
     // Answers take their time.
     refuse_existing(arguments, &path)?;
@@ -178,6 +196,42 @@ pub fn run(session: &Session, arguments: &NewArguments) -> Result<(), Failure> {
             path.display()
         ),
     );
+    Ok(())
+}
+
+/// The file that the choices make: nothing that the loader would refuse.
+fn written(choices: &Choices, path: &Path) -> Result<Written, Failure> {
+    let text = template::write(choices);
+    let source = description::Source { name: path.display().to_string(), text: text.clone() };
+    let machine =
+        description::load(source, &[], &mut |parent| Err(format!("there is no machine {parent}")))?;
+    Ok(Written { text, machine })
+}
+
+/// Has the dialect tell what its control lacks, and by which of its flags it has a spindle. One that does not open says why
+/// when the machine is tried.
+fn ask_the_dialect(choices: &mut Choices, path: &Path, finder: &Finder) -> Result<(), Failure> {
+    let open = |choices: &Choices| -> Result<Option<OpenedDialect>, Failure> {
+        let machine = written(choices, path)?.machine;
+        Ok(plugin_finder::dialect(finder, &machine, "NEW", None).ok().map(|(opened, _)| opened))
+    };
+    let Some(mut opened) = open(choices)? else {
+        return Ok(());
+    };
+    choices.control.no_positions = opened.capabilities().has(Capabilities::NO_PARK);
+    if plugin_finder::has_spindle(&mut opened) {
+        return Ok(());
+    }
+    let Ok(plugin) = finder.find(&choices.dialect) else {
+        return Ok(());
+    };
+    for spec in plugin.options().iter().filter(|spec| matches!(spec.kind, OptionKind::Flag)) {
+        choices.control.spindle_by = Some(spec.key.to_owned());
+        if open(choices)?.is_some_and(|mut opened| plugin_finder::has_spindle(&mut opened)) {
+            return Ok(());
+        }
+    }
+    choices.control.spindle_by = None;
     Ok(())
 }
 
@@ -235,6 +289,7 @@ fn choices(arguments: &NewArguments, path: &Path) -> Result<Choices, Failure> {
         tilt: arguments.tilt.unwrap_or(50.0),
         arm: arguments.arm.map_or(USUAL_ARM, |ArmLengths(arm)| arm),
         tolerance: 0.0,
+        control: ControlFacts::default(),
     };
     if arguments.class.is_none() {
         questions::ask(arguments, &mut choices)?;

@@ -556,7 +556,7 @@ fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
             "\"post\": axis positions; \"control\": the tip (G43.4, M128, …)",
         );
     }
-    let no_positions = matches!(choices.dialect.as_str(), "klipper" | "marlin");
+    let no_positions = choices.control.no_positions;
     if choices.class == Class::LatheXzc && !no_positions {
         line("park    = { C = 0 }", "turned back off the part, at the end");
     }
@@ -574,9 +574,14 @@ fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         line("change  = {}", "and nothing goes to where a tool is changed");
     }
     let options = options(choices);
-    if !options.is_empty() {
+    let spindle_by = choices.control.spindle_by.as_ref();
+    if !options.is_empty() || spindle_by.is_some() {
         line("", "");
         line(&format!("[control.{}]", choices.dialect), "");
+        if let Some(option) = spindle_by {
+            let remark = "the spindle's words are those of the build, or macros: compare";
+            line(&format!("{option} = true"), remark);
+        }
         for (said, remark) in options {
             line(said, remark);
         }
@@ -605,9 +610,6 @@ fn options(choices: &Choices) -> Vec<(&'static str, &'static str)> {
         }
         "grbl" if choices.class.turns() => {
             vec![("hal = true", "grblHAL: GRBL 1.1 has X, Y and Z alone")]
-        }
-        "klipper" | "rrf" | "marlin" => {
-            vec![("mill = true", "M3, M4, M5 are words of the build or macros; a printer has none")]
         }
         _ => Vec::new(),
     }

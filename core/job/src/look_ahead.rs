@@ -29,8 +29,11 @@ pub fn look_ahead(
     let OpenedPlugins { mut dialect, mut model, .. } = OpenedPlugins::open(finder, &plain, head)?;
     let planes = posting_pass::file_preview(arguments, source, &plain, &dialect)?;
     let input = source.open()?;
-    let request =
-        PostingRequest { ahead: planes, lines, ..posting_pass::posting_request(arguments, &input) };
+    let request = PostingRequest {
+        ahead: planes,
+        lines,
+        ..posting_pass::posting_request_to(arguments, &input, &mut dialect)
+    };
     let inch = machine.control.units == OutputUnits::Inch;
     let mut ahead = ProgramPreview { inch, ..ProgramPreview::default() };
     let pass = PostingPass {

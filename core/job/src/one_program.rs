@@ -102,7 +102,7 @@ impl OneProgram<'_> {
                 remarks,
             },
             lines: lines.map(|lines| lines.ranges),
-            ..posting_pass::posting_request(arguments, &input)
+            ..posting_pass::posting_request_to(arguments, &input, &mut dialect)
         };
         let (dialect, model) = (&mut dialect, &mut model);
         let pass = PostingPass { machine, request, threads, dialect, model, keeps_clear };

@@ -10,7 +10,9 @@ use post_host::{
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OutputUnits, Tcp};
 use post_machine::diagnostic::{self, Diagnostic, SourcePlace, nearest};
-use post_plugin::{Accuracy, Tolerance, Units, Value};
+use post_plugin::{
+    Accuracy, Capabilities, DialectSession as _, Meaning, Tolerance, Units, Value, VocabularyWord,
+};
 use post_posting::ProgramPreview;
 use post_posting::report::PluginUse;
 
@@ -119,6 +121,16 @@ pub fn dialect(
     cl_file: Option<&PathArg>,
 ) -> Result<(OpenedDialect, PluginUse), Vec<Diagnostic>> {
     dialect_knowing(finder, machine, program, cl_file, None)
+}
+
+/// Some word of the control turns a spindle, as far as its dialect tells: one whose line is a command names all of them.
+pub fn has_spindle(dialect: &mut OpenedDialect) -> bool {
+    if !dialect.capabilities().has(Capabilities::COMMAND_A_LINE) {
+        return true;
+    }
+    let words = dialect.vocabulary().unwrap_or_default();
+    let turns = |word: &VocabularyWord| word.meaning == Meaning::SpindleClockwise;
+    words.is_empty() || words.iter().any(turns)
 }
 
 /// [`dialect`] with what a first pass over the CL file found.

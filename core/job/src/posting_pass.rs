@@ -12,7 +12,7 @@ use post_machine::diagnostic::Diagnostic;
 use post_plugin::{DialectSession, ModelSession};
 use post_posting::plan::PlanWatch;
 use post_posting::preview::{self, FilePreview, PreviewPass};
-use post_posting::program::ReadingOptions;
+use post_posting::program::{DefaultSpindle, ReadingOptions};
 use post_posting::report::{PluginUse, PostingReport};
 use post_posting::{Observer, PathShift, Post, PostingRequest, ProgramPreview, TextSink};
 
@@ -223,6 +223,19 @@ pub fn posting_request(arguments: &JobSettings, input: &ClInput) -> PostingReque
         tool_length: arguments.over.tool_length,
         ..PostingRequest::default()
     }
+}
+
+/// [`posting_request`] for a dialect: where its control has no word for a spindle, cuts ask for none.
+pub fn posting_request_to(
+    arguments: &JobSettings,
+    input: &ClInput,
+    dialect: &mut OpenedDialect,
+) -> PostingRequest {
+    let mut request = posting_request(arguments, input);
+    if request.reading.spindle == DefaultSpindle::Unknown && !plugin_finder::has_spindle(dialect) {
+        request.reading.spindle = DefaultSpindle::Still;
+    }
+    request
 }
 
 /// What a first pass over the CL file finds out where the program depends on it.

@@ -68,7 +68,8 @@ impl Heidenhain {
                 if self.stays =>
             {
                 return Err(
-                    "`M140` retracts along the tool's axis, which no TOOL CALL has named yet: name another `retract`"
+                    "`M140` retracts along the tool's axis, which no TOOL CALL has named yet: load a tool ahead of this (LOADTL; --tool N \
+                     where the CL file loads none), or name another `retract`"
                         .to_owned(),
                 );
             }

@@ -72,7 +72,7 @@ pub fn run(session: &Session, arguments: &ReadArguments) -> Result<(), Failure> 
     let found = read::read(session, &control, &request)?;
     session.findings(&found.report.notes);
     let refused = found.refused;
-    let text = read_text::text(&control.machine, &found.survey, &found.report, refused.len());
+    let text = read_text::text(&control, &found.survey, &found.report, refused.len());
     terminal::print_beside(session, &text, found.printed);
     if refused.is_empty() { Ok(()) } else { Err(refused.into()) }
 }

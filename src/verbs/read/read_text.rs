@@ -3,6 +3,7 @@
 use post_machine::description::{Axis, Machine};
 use post_readback::interpret::ReadReport;
 
+use post_job::nc_program::NcControl;
 use post_job::read::ProgramSurvey;
 use post_job::text::{clock, number};
 use post_job::text_table::{NamedValues, TextTable};
@@ -12,11 +13,12 @@ const LISTED: usize = 40;
 
 /// What was read, as lines.
 pub fn text(
-    machine: &Machine,
+    control: &NcControl,
     survey: &ProgramSurvey<'_>,
     report: &ReadReport,
     refused: usize,
 ) -> String {
+    let machine = &control.machine;
     let mut rows = NamedValues::default();
     rows.row("machine", format_args!("{} ({})", machine.name, machine.control.dialect));
     if report.header > 0 {
@@ -45,10 +47,11 @@ pub fn text(
     let [rapid, feed] = survey.minutes;
     rows.row("time at the stated feeds", clock(feed * 60.0));
     if rapid > 0.0 {
-        rows.row(
-            "time of rapids",
-            format_args!("{}, each axis at its max_feed", clock(rapid * 60.0)),
-        );
+        let how = match control.lexicon.rapids_at_feed() {
+            true => "at their F, no axis above its max_feed",
+            false => "each axis at its max_feed",
+        };
+        rows.row("time of rapids", format_args!("{}, {how}", clock(rapid * 60.0)));
     }
     if survey.waits > 0.0 {
         rows.row("waits", clock(survey.waits));

@@ -301,7 +301,8 @@ impl<'m> LintWatch<'m> {
     fn spindle(&mut self, motion: &Motion) {
         let machine = &self.control.machine;
         let state = &motion.state;
-        if machine.along.is_some() || state.solver.chain().edge().is_some() {
+        let turns = self.control.lexicon.has_spindle();
+        if !turns || machine.along.is_some() || state.solver.chain().edge().is_some() {
             return;
         }
         let line = motion.line;

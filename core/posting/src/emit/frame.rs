@@ -240,7 +240,6 @@ impl EmitStage<'_> {
         let machine = self.machine;
         self.park(line, &machine.frame.change);
         self.texts.tool(tool);
-        self.writer.tool_known();
         if tool.register != tool.number && self.writer.knows(Capabilities::TOOL_TABLE) {
             self.findings.at(
                 line,

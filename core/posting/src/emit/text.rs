@@ -20,8 +20,6 @@ pub(super) struct EventBatch {
     pub found: usize,
     /// Something was wrong before it: no text is written any more, but the dialect may find more.
     pub failed: bool,
-    /// The CL file has loaded a tool.
-    pub tool_known: bool,
     /// Events whose lines are asked for.
     pub marks: [Option<usize>; 3],
     /// Lines of the program that these events end on.
@@ -96,12 +94,10 @@ impl<'a> TextWriter<'a> {
         let fault = match written {
             Err(refused) => {
                 let events = &batch.events;
-                let line = events.line(refused.index.min(events.len() - 1));
-                let mut finding = Diagnostic::error("dialect", refused.message);
-                if !batch.tool_known {
-                    finding = finding.help("the CL file loads no tool: --tool N says which it is");
-                }
-                Some((Some(line), finding))
+                // What stands ahead of all that the CL file says comes from no line of it.
+                let line = Some(events.line(refused.index.min(events.len() - 1)));
+                let finding = Diagnostic::error("dialect", refused.message);
+                Some((line.filter(|line| *line > 0), finding))
             }
             Ok(()) if batch.failed => None,
             Ok(()) => {

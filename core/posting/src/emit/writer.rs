@@ -22,8 +22,6 @@ pub(super) struct EventWriter<'a> {
     text: TextPlaceOfWork<'a>,
     /// Lines of the batches that have come back.
     lines: u64,
-    /// The CL file has loaded a tool.
-    tool_known: bool,
     /// The dialect refused an event, or the output text: no more is made.
     broken: bool,
 }
@@ -45,7 +43,6 @@ impl<'a> EventWriter<'a> {
             count: 0,
             text: TextPlaceOfWork::Here(TextWriter::new(dialect, output)),
             lines: 0,
-            tool_known: false,
             broken: false,
         }
     }
@@ -123,11 +120,6 @@ impl<'a> EventWriter<'a> {
         self.batch.events.len() >= BATCH
     }
 
-    /// The CL file loads a tool.
-    pub(super) fn tool_known(&mut self) {
-        self.tool_known = true;
-    }
-
     /// Takes an event that comes from `line`.
     #[inline]
     pub(super) fn push(&mut self, line: u64, event: Event<'_>) {
@@ -171,7 +163,6 @@ impl<'a> EventWriter<'a> {
         batch.number = self.count;
         batch.found = findings.count();
         batch.failed = findings.failed();
-        batch.tool_known = self.tool_known;
         batch.marks = extremes.hand_over(self.count);
         match &mut self.text {
             TextPlaceOfWork::Here(text) => {

@@ -311,8 +311,11 @@ fn what_short_blocks_push_out_is_told_together() {
     let made = run(command().args(["-q", "-o", "-"]).args(machine).arg(&list), b"");
     assert_eq!(made.code, 0, "{}", made.err);
     let verify = |program: &str| {
-        let against = command().arg("verify").args(machine).arg("--against").arg(&list).arg("-");
-        run(against, program.as_bytes())
+        let list = list.to_str().unwrap();
+        run(
+            command().arg("verify").args(machine).args(["--against", list, "-"]),
+            program.as_bytes(),
+        )
     };
     let right = verify(&made.out);
     assert_eq!(right.code, 0, "{}{}", right.out, right.err);

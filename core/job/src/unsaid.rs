@@ -4,7 +4,7 @@
 use post_host::Finder;
 use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
-use post_plugin::Meaning;
+use post_plugin::{Capabilities, Meaning};
 use post_readback::interpret::{ContraryMode, ModalGroup, ModesInForce, ReadReport};
 
 use super::nc_program::DialectVocabulary;
@@ -174,7 +174,10 @@ impl Unsaid<'_> {
     pub fn end(&self) -> Option<Diagnostic> {
         let last_line = self.last_line?;
         let Some(end) = &self.report.end else {
-            // A control without such a word ends with the file.
+            // A control without such a word ends with the file, and so does one that runs its lines one by one.
+            if self.spoken.writes.has(Capabilities::COMMAND_A_LINE) {
+                return None;
+            }
             self.spoken.words.iter().find(|word| word.meaning == Meaning::End)?;
             let message = "no word of the program ends it: the control stops there with an alarm, or goes on in what stands behind it";
             let help = "end it by the control's word: M30, M2, or M99 where it is called";

@@ -357,7 +357,7 @@ fn what_a_firmware_makes_otherwise_of_a_line_is_told() {
         let ahead = |word: &str| with(&|line| format!("{word}\n{line}"));
         for (what, changed) in [
             ("begins a line", with(&|line| line.replacen("G1 ", "", 1))),
-            ("begins a line", with(&|line| line.replacen("G1 ", "F600 G1 ", 1))),
+            ("begins a line", with(&|line| line.replacen("G1 ", "S5 G1 ", 1))),
             ("stands behind the command", with(&|line| format!("G90 {line}"))),
             ("stands behind the command", with(&|line| format!("{line} M400"))),
             ("begins a line", ahead("F600")),
@@ -406,11 +406,13 @@ fn what_a_printer_cannot_do_is_refused() {
         let name = firmware.name;
         let spindle = told(name, &["--spindle", "6000"]);
         assert!(spindle.contains("no words for a spindle"), "{name}: {spindle}");
+        assert!(!spindle.contains("loads no tool"), "{name}: {spindle}");
         let inch = told(name, &["--set", "control.units=inch"]);
         assert!(inch.contains("inches are not sure"), "{name}: {inch}");
     }
     for name in ["klipper", "marlin"] {
         let up = told(name, &["--set", "control.retract={Z=100}"]);
         assert!(up.contains("no words for positions in machine coordinates"), "{name}: {up}");
+        assert!(!up.contains("loads no tool") && !up.contains("csv:0"), "{name}: {up}");
     }
 }

@@ -430,6 +430,12 @@ typedef struct {
 #define POST_WRITES_FEED_LONGEST_TURN 0x0008000000000000u
 /* Park does not come: the control has no words for positions in machine coordinates. */
 #define POST_WRITES_NO_PARK 0x0010000000000000u
+/* G0 goes at F, as G1 does: rapid_feed of the format says at which. */
+#define POST_WRITES_RAPIDS_AT_FEED 0x0020000000000000u
+/* A line is one command, which stands first, and its parameters: no word of motion holds on to the next line,
+ * and what stands in front of a command or behind it is not run as words of a block. The dialect names every
+ * word that its control reads: what others of its language have in common does not hold. */
+#define POST_WRITES_COMMAND_A_LINE 0x0040000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

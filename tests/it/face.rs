@@ -237,3 +237,22 @@ fn what_the_mode_cannot_is_refused_or_written_without_it() {
     assert_eq!(made.code, 1, "{}", made.out);
     assert!(made.err.contains("polar coordinates ([mode.face])"), "{}", made.err);
 }
+
+#[test]
+fn a_mode_whose_words_the_control_does_not_have_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let square = [V::new(10.0, 10.0, -2.0), V::new(-10.0, 10.0, -2.0), V::new(-10.0, -12.0, -2.0)];
+    let cl = milled(&square, 300.0);
+    for (dialect, on, known) in [
+        ("haas", "G12.1", "haas has G112"),
+        ("siemens", "G12.1", "TRANSMIT"),
+        ("fanuc", "G999", "G12.1, G112"),
+    ] {
+        let set = [format!("control.dialect={dialect}"), format!("mode.face.on={on}")];
+        let made = run(folder.path(), &cl, &set.each_ref().map(String::as_str));
+        assert_eq!((made.code, made.out.as_str()), (1, ""), "{dialect} {on}");
+        let message = format!("[mode.face] on = \"{on}\": dialect {dialect} knows no word of it");
+        assert!(made.err.contains(&message) && made.err.contains(known), "{}", made.err);
+    }
+    assert_eq!(run(folder.path(), &cl, &["mode.face.on=G012.1"]).code, 0);
+}

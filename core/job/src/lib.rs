@@ -27,6 +27,7 @@ mod look_ahead;
 pub mod machine_files;
 pub mod machine_schema;
 pub mod making;
+mod mode_words;
 pub mod nc_program;
 mod nc_to_cl;
 pub mod old_summary;

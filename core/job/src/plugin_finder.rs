@@ -16,7 +16,7 @@ use post_plugin::{
 use post_posting::ProgramPreview;
 use post_posting::report::PluginUse;
 
-use super::{given_values::given, orientation, plugin_folders};
+use super::{given_values::given, mode_words, orientation, plugin_folders};
 use crate::files::{PathArg, standard};
 use crate::session::Session;
 
@@ -213,8 +213,11 @@ pub fn dialect_knowing(
             time: ahead.time_s,
         }),
     };
-    let opened = plugin.dialect(&setup).map_err(fault)?;
-    Ok((opened, used(&plugin)))
+    let mut opened = plugin.dialect(&setup).map_err(fault)?;
+    match mode_words::unknown(machine, &mut opened) {
+        Some(unknown) => Err(vec![unknown]),
+        None => Ok((opened, used(&plugin))),
+    }
 }
 
 /// The CL file's name without its folder; empty for standard input.

@@ -55,6 +55,20 @@ fn pair(first: &[&str], second: &[&str]) -> [Channel; 2] {
     })
 }
 
+#[test]
+fn channels_that_wait_by_other_lines_never_meet() {
+    let folder = shop(&pair(&["SYNC/1,1,2"], &["SYNC/1,2,1"]), "word = \"M{n+99}\"", "fanuc");
+    good(folder.path(), &["both.job.toml"]);
+    let other = read(folder.path(), "m2.toml").replace("M{n+99}", "M{n+199}");
+    fs::write(folder.path().join("m2.toml"), other).unwrap();
+    for program in ["c1.nc", "c2.nc"] {
+        fs::remove_file(folder.path().join(program)).unwrap();
+    }
+    let lines = "channels 1 and 2 wait by other lines, M{n+99} and M{n+199}";
+    refused(folder.path(), &["both.job.toml"], &["error[wait]", lines]);
+    assert!(!folder.path().join("c1.nc").exists());
+}
+
 fn read(folder: &Path, name: &str) -> String {
     fs::read_to_string(folder.join(name)).unwrap()
 }

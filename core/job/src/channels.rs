@@ -47,14 +47,40 @@ struct Wait {
     time_s: f64,
 }
 
+/// Two channels whose machine files wait by other words: one control reads both programs, and the lines of one mark would be
+/// two marks to it.
+fn words_apart(programs: &[ChannelProgram<'_>]) -> Option<Diagnostic> {
+    let said = |program: &ChannelProgram<'_>| {
+        let word = program.machine.wait.as_ref().and_then(|wait| wait.word());
+        word.filter(|_| !program.outcome.report.waits.is_empty()).map(str::to_owned)
+    };
+    let said: Vec<(usize, String)> = programs
+        .iter()
+        .enumerate()
+        .filter_map(|(index, program)| Some((index + 1, said(program)?)))
+        .collect();
+    let [(one, first), (other, second)] = said.windows(2).find(|pair| pair[0].1 != pair[1].1)?
+    else {
+        return None;
+    };
+    let message = format!(
+        "channels {one} and {other} wait by other lines, {first} and {second}: the control would never see them meet"
+    );
+    let help = "the same [wait] word in the machine files of one machine's channels";
+    Some(Diagnostic::error("wait", message).help(help))
+}
+
 /// Joins the programs, in the order of their channels from 1, and tells each how long it waits.
 ///
 /// # Errors
-/// Channels wait for one another for ever, or two of them have one axis or one spindle.
+/// Channels wait for one another for ever or by other lines, or two of them have one axis or one spindle.
 pub fn join(programs: &mut [ChannelProgram<'_>]) -> Result<JoinedChannels, Vec<Diagnostic>> {
     let shared = shared(programs);
     if !shared.is_empty() {
         return Err(shared);
+    }
+    if let Some(apart) = words_apart(programs) {
+        return Err(vec![apart]);
     }
     let predicted = programs.iter().all(|program| {
         let ProgramOutcome { prediction, report, .. } = &*program.outcome;

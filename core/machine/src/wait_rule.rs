@@ -54,6 +54,11 @@ pub struct WaitLack {
 }
 
 impl WaitRule {
+    /// The line of the program, as the file has it; none if the control has no word for it.
+    pub fn word(&self) -> Option<&str> {
+        self.word.as_deref()
+    }
+
     /// The line for a mark.
     ///
     /// # Errors

@@ -192,6 +192,15 @@ fn what_is_not_determined_is_refused_and_a_bad_reading_is_told() {
         assert_contains(&done.err, &[said]);
     }
     write("ball.csv", &good);
+    let runs = "[error.C]\ncolumns = [\"C\", \"EXC\"]\nrows = [[0, 0.01], [360, 0.01]]\n";
+    write("erring.toml", &format!("extends = \"drawing.toml\"\n{runs}"));
+    let with_errors = words.map(|word| if word == "drawing.toml" { "erring.toml" } else { word });
+    let done = post_in(folder.path(), &with_errors);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert_contains(
+        &done.err,
+        &["warning[calibrate]", "[error] tables of the machine file are not counted"],
+    );
     let done = post_in(folder.path(), &[&words[..], &["--fit", "C.pont"]].concat());
     assert_contains(&done.err, &["--fit C.pont", "did you mean `C.point`?"]);
 }

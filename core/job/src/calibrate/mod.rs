@@ -69,6 +69,11 @@ pub fn find(session: &Session, request: &CalibrationRequest) -> Result<Calibrati
     let calibration = found.map_err(|fault| refusal(&file, fault))?;
     let far = FAR * libm::sqrt(3.0) * calibration.spread;
     let off = calibration.left.iter().zip(&table.lines).filter(|(left, _)| **left > far);
+    let errors = (!machine.errors.is_empty() || !machine.error_tables.is_empty()).then(|| {
+        let message = "[error] tables of the machine file are not counted: the readings are taken for those of the axes as they are drawn";
+        Diagnostic::warning("calibrate", message.to_owned())
+            .help("measure first and calibrate, then measure the errors that are left")
+    });
     let findings = off
         .map(|(left, line)| {
             let message = format!(
@@ -80,6 +85,7 @@ pub fn find(session: &Session, request: &CalibrationRequest) -> Result<Calibrati
                 "look at it, measure it again, or leave it out: one bad reading draws all numbers",
             )
         })
+        .chain(errors)
         .collect();
     Ok(CalibrationFound {
         readings: table.readings.len(),

@@ -62,6 +62,19 @@ impl Parameters<'_> {
         }
     }
 
+    /// Each stands once, none that the cycle has on any software is left out, and there is none that it has on none.
+    fn are_of(&self, cycle: &CycleParameters) -> Result<(), Box<Diagnostic>> {
+        for (place, (number, _)) in self.values.iter().enumerate() {
+            if !cycle.always.contains(number) && !cycle.besides.contains(number) {
+                return Err(self.refuse(&format!("Q{number} is no parameter of this cycle")));
+            }
+            if self.values[..place].iter().any(|(before, _)| before == number) {
+                return Err(self.refuse(&format!("Q{number} is given twice")));
+            }
+        }
+        cycle.always.iter().try_for_each(|number| self.needed(*number).map(|_| ()))
+    }
+
     fn wait(&self, number: u32) -> HoleDwell {
         HoleDwell::seconds(self.given(number).unwrap_or(0.0))
     }
@@ -71,19 +84,61 @@ impl Parameters<'_> {
     }
 }
 
-/// Whether a cycle of this number is made here.
-pub(crate) fn known(cycle: u32) -> bool {
-    matches!(cycle, 200..=203 | 205..=207 | 209 | 240)
+/// Parameters of a cycle, by their numbers.
+struct CycleParameters {
+    cycle: u32,
+    /// Those that it has on any software: without one of them the control takes the definition for incomplete.
+    always: &'static [u32],
+    /// Those that some software has.
+    besides: &'static [u32],
 }
+
+/// The cycles that are made here: TNC 426, iTNC 530 and TNC 640, user's manuals of cycles.
+const CYCLES: &[CycleParameters] = &[
+    CycleParameters {
+        cycle: 200,
+        always: &[200, 201, 206, 202, 210, 203, 204],
+        besides: &[211, 395],
+    },
+    CycleParameters { cycle: 201, always: &[200, 201, 206, 208, 203, 204], besides: &[211] },
+    CycleParameters {
+        cycle: 202,
+        always: &[200, 201, 206, 208, 203, 204, 214],
+        besides: &[211, 336, 357],
+    },
+    CycleParameters {
+        cycle: 203,
+        always: &[200, 201, 206, 202, 210, 203, 204, 212, 213, 205],
+        besides: &[211, 208, 256, 395],
+    },
+    CycleParameters {
+        cycle: 205,
+        always: &[200, 201, 206, 202, 203, 204, 212, 205, 258, 257],
+        besides: &[259, 256, 211, 379, 253, 208, 395],
+    },
+    CycleParameters { cycle: 206, always: &[200, 201, 206, 203, 204], besides: &[211] },
+    CycleParameters { cycle: 207, always: &[200, 201, 239, 203, 204], besides: &[] },
+    CycleParameters {
+        cycle: 209,
+        always: &[200, 201, 239, 203, 204, 257, 256],
+        besides: &[336, 403],
+    },
+    CycleParameters {
+        cycle: 240,
+        always: &[200, 201, 206, 203, 204],
+        besides: &[343, 344, 211, 342, 253],
+    },
+];
 
 /// The hole that a definition makes; none where its depth is zero, with which the control does nothing.
 ///
 /// # Errors
 /// What is missing, contradictory or not plain, by name.
 pub(crate) fn hole(parameters: &Parameters<'_>) -> Result<Option<CycleHole>, Box<Diagnostic>> {
-    if !known(parameters.cycle) {
+    let Some(known) = CYCLES.iter().find(|known| known.cycle == parameters.cycle) else {
         return Err(parameters.refuse("this cycle is not made here"));
-    }
+    };
+    parameters.are_of(known)?;
     let depth = parameters.length(201)?;
     if depth == 0.0 {
         return Ok(None);

@@ -107,6 +107,7 @@ fn leaves_the_path(corners: Corners) -> bool {
     match corners {
         Corners::Own => true,
         Corners::Said(CornerMode::Blend { tolerance }) => tolerance.is_some(),
+        Corners::Said(CornerMode::Within { .. }) => true,
         _ => false,
     }
 }

@@ -84,4 +84,9 @@ pub enum CornerMode {
         /// Largest distance from the path, mm; none: as far as the control's own rule leads.
         tolerance: Option<f64>,
     },
+    /// The machine may leave the path so near to the corner (G641 ADIS).
+    Within {
+        /// Largest distance from the corner along the path, mm.
+        distance: f64,
+    },
 }

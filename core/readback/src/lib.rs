@@ -38,7 +38,7 @@ pub use offsets::{Offsets, Reference, WorkOffset};
 pub use post_motion::path::{BSpline, Curve, Interpolation, Stance};
 pub use program_event::{Coolants, CycleCall, CycleKind, ProgramEvent, SpindleState};
 pub use run::{BlockRunner, MOST_FAULTS, ProgramRun};
-pub use smoothing::smooths_beyond;
+pub use smoothing::Leeway;
 
 use std::sync::Arc;
 
@@ -111,6 +111,8 @@ pub struct MachineState {
     pub operation: Option<String>,
     /// The control may leave the path by this much, mm; none: it keeps it, or nothing is said.
     pub smoothing: Option<f64>,
+    /// The control may turn the tool axis off by this much beside that, radians; zero: nothing is said.
+    pub smoothing_turn: f64,
     /// How the control passes from one motion to the next.
     pub corners: Corners,
 }

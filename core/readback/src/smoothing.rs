@@ -5,28 +5,61 @@ use post_motion::CornerMode;
 
 use crate::{Corners, MachineState};
 
-/// Rounding of what is compared, mm.
-const SAME: f64 = 1e-3;
+/// Rounding of what is compared, mm and radians.
+const SAME: [f64; 2] = [1e-3, 1e-6];
+
+/// How far the control may leave what is programmed, by what the program says; zero where it says nothing of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Leeway {
+    /// From the path, mm.
+    pub path: f64,
+    /// From the tool axis there, radians.
+    pub turn: f64,
+}
 
 impl MachineState {
-    /// How far the control may leave the path by what the program says, mm; zero where it says nothing of it.
-    pub fn off_path(&self) -> f64 {
+    /// How far the control may leave what is programmed.
+    pub fn leeway(&self) -> Leeway {
         let said = match self.corners {
             Corners::Said(CornerMode::Blend { tolerance }) => tolerance,
             _ => None,
         };
-        self.smoothing.or(said).unwrap_or(0.0)
+        Leeway { path: self.smoothing.or(said).unwrap_or(0.0), turn: self.smoothing_turn }
     }
 }
 
-/// What is to be told of a control that may leave the path by `off_path` mm, where the program keeps within `tolerance` mm and
-/// the machine file smooths by more or less; none where that is enough.
-pub fn smooths_beyond(off_path: f64, machine: &Machine, tolerance: f64) -> Option<String> {
-    let most = machine.smoothing.largest().unwrap_or(0.0).max(tolerance);
-    let far = match off_path {
-        off_path if off_path <= most + SAME => return None,
-        off_path if off_path.is_finite() => format!("by {off_path} mm"),
-        _ => "by any distance".to_owned(),
-    };
-    Some(format!("the control may leave the path {far}, and the tolerance is {most} mm"))
+impl Leeway {
+    /// What is to be told of it, where the program keeps within `tolerance` mm and `axis_tolerance` radians and the machine
+    /// file smooths by more or less; nothing where that is enough.
+    pub fn beyond(
+        self,
+        machine: &Machine,
+        tolerance: f64,
+        axis_tolerance: f64,
+    ) -> impl Iterator<Item = String> {
+        let smoothing = machine.smoothing.largest();
+        let most = smoothing.map_or(0.0, |smoothing| smoothing.tolerance).max(tolerance);
+        let path = (self.path > most + SAME[0]).then(|| {
+            let far = match self.path.is_finite() {
+                true => format!("by {} mm", self.path),
+                false => "by any distance".to_owned(),
+            };
+            format!("the control may leave the path {far}, and the tolerance is {most} mm")
+        });
+        let named = smoothing.and_then(|smoothing| smoothing.axis_tolerance).unwrap_or(0.0);
+        let most = named.to_radians().max(axis_tolerance);
+        let turns = machine.axes.iter().any(|axis| axis.joint.rotary);
+        let turn = (turns && self.turn > most + SAME[1]).then(|| {
+            let [far, most] = [self.turn, most].map(|angle| degrees(angle.to_degrees()));
+            format!(
+                "the control may turn the tool axis off by {far}°, and the tolerance is {most}°"
+            )
+        });
+        path.into_iter().chain(turn)
+    }
+}
+
+/// An angle as it was written: without what turning it into radians and back has left.
+fn degrees(angle: f64) -> f64 {
+    libm::rint(angle * 1e6) / 1e6
 }

@@ -167,9 +167,13 @@ impl ProgramTasks {
         };
         match said {
             // A hole has its depth, and a thread turns back at its end.
-            CornerMode::Blend { .. } if motion.hole || motion.kind == MotionKind::Thread => {
+            CornerMode::Blend { .. } | CornerMode::Within { .. }
+                if motion.hole || motion.kind == MotionKind::Thread =>
+            {
                 CornerMode::Path
             }
+            // ADIS is for cuts.
+            CornerMode::Within { .. } if rapid => self.usual,
             CornerMode::Blend { tolerance } => {
                 CornerMode::Blend { tolerance: tolerance.or(self.tolerance) }
             }

@@ -127,7 +127,7 @@ pub enum NcTerm {
 /// A letter and its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NcWord {
-    /// The letter, a capital.
+    /// The letter, a capital; `@` and `^` of polar coordinates.
     pub letter: u8,
     /// Whether the value is a way from where the tool stands: `IX` (conversational), `X=IC(5)` (Siemens).
     pub incremental: bool,
@@ -161,6 +161,17 @@ pub enum Approach {
     Positive,
     /// `ACN`: turning to the negative side.
     Negative,
+    /// `DAC`, `DIC`, `RAC`, `RIC`: a diameter or a radius, whatever the words of the axis are.
+    Across(Across),
+}
+
+/// A word of a diameter or a radius, in its block alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Across {
+    /// A diameter, else a radius.
+    pub diameter: bool,
+    /// A way, else a position.
+    pub incremental: bool,
 }
 
 /// A number as written.

@@ -6,7 +6,7 @@ use pest::iterators::{Pair, Pairs};
 use pest_derive::Parser;
 
 use super::block::{
-    Approach, JumpDirection, NcBlock, NcFlow, NcItem, NcNumber, NcSyntax, NcValue, NcWord,
+    Across, Approach, JumpDirection, NcBlock, NcFlow, NcItem, NcNumber, NcSyntax, NcValue, NcWord,
 };
 use super::expression::{NcExpression, UnaryOperator};
 use super::fault::Unreadable;
@@ -228,6 +228,10 @@ impl WordsBuilder<'_> {
                     "ACN" => Approach::Negative,
                     "AC" => Approach::Absolute,
                     "DC" => Approach::Shortest,
+                    across @ ("DAC" | "DIC" | "RAC" | "RIC") => Approach::Across(Across {
+                        diameter: across.starts_with('D'),
+                        incremental: across.ends_with("IC"),
+                    }),
                     _ => Approach::Incremental,
                 };
                 let value = self.value(due(&mut parts)?)?;
@@ -530,11 +534,18 @@ impl WordsBuilder<'_> {
             "ENDREPEAT" => NcFlow::EndRepeat(Some(name)),
             "BREAK" => NcFlow::Break(Some(name)),
             "CONTINUE" => NcFlow::Continue(Some(name)),
-            "RETURN" => NcFlow::Return(Some(name)),
-            _ => NcFlow::SubEnd(Some(name)),
+            // What it hands on stands in `#<_value>`, which is not read.
+            "RETURN" => {
+                values.next();
+                NcFlow::Return(Some(name))
+            }
+            _ => {
+                values.next();
+                NcFlow::SubEnd(Some(name))
+            }
         };
         if values.next().is_some() {
-            let message = "the value that this word hands on, or one too many, is not read";
+            let message = "a value too many stands behind this word";
             return Err(Unreadable::new(message));
         }
         Ok(flow)

@@ -8,7 +8,7 @@ use post_machine::description::LengthAxis;
 use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 use post_plugin::Lengths;
 use post_readback::{
-    BlockEffect, Coolants, Curve, Motion, MotionKind, ProgramEvent, SpindleState, smooths_beyond,
+    BlockEffect, Coolants, Curve, Leeway, Motion, MotionKind, ProgramEvent, SpindleState,
 };
 
 use super::depths::{CutDepths, DeepRapid};
@@ -113,7 +113,7 @@ pub(super) struct LintWatch<'m> {
     /// The length of the tool was not looked at since it was changed.
     new_tool: bool,
     /// How far the control may leave the path, mm.
-    off_path: f64,
+    leeway: Leeway,
     /// The length of the tool in the spindle was in force since it was changed.
     had_length: bool,
     /// Some tool has a length in force somewhere.
@@ -139,7 +139,7 @@ impl<'m> LintWatch<'m> {
             broken: Vec::new(),
             tools: [None; 2],
             new_tool: true,
-            off_path: 0.0,
+            leeway: Leeway::default(),
             had_length: false,
             has_lengths: false,
             turns: false,
@@ -245,10 +245,12 @@ impl<'m> LintWatch<'m> {
 
     /// Whether the control may leave the path by more than the tolerance of the machine file.
     fn smoothing(&mut self, motion: &Motion) {
-        let off_path = motion.state.off_path();
-        if off_path != std::mem::replace(&mut self.off_path, off_path) {
-            let machine = &self.control.machine;
-            if let Some(message) = smooths_beyond(off_path, machine, machine.accuracy.tolerance) {
+        let leeway = motion.state.leeway();
+        if leeway != std::mem::replace(&mut self.leeway, leeway) {
+            let accuracy = &self.control.machine.accuracy;
+            let tolerances = (accuracy.tolerance, accuracy.axis_tolerance);
+            let beyond = leeway.beyond(&self.control.machine, tolerances.0, tolerances.1);
+            for message in beyond.collect::<Vec<_>>() {
                 self.tell(Rule::Smoothing, motion.line, message);
             }
         }

@@ -29,11 +29,17 @@ impl SmoothingRules {
         self.default.is_some() || !self.operations.is_empty()
     }
 
-    /// The largest tolerance of the tip that one of them has, mm.
-    pub fn largest(&self) -> Option<f64> {
-        let operations = self.operations.iter().map(|(_, smoothing)| smoothing);
-        let all = operations.chain(&self.default);
-        all.map(|smoothing| smoothing.tolerance).reduce(f64::max)
+    /// The largest tolerances that one of them has; none where nothing is smoothed.
+    pub fn largest(&self) -> Option<Smoothing> {
+        let operations = self.operations.iter().map(|(_, smoothing)| *smoothing);
+        operations.chain(self.default).reduce(|most, next| Smoothing {
+            tolerance: most.tolerance.max(next.tolerance),
+            axis_tolerance: most
+                .axis_tolerance
+                .into_iter()
+                .chain(next.axis_tolerance)
+                .reduce(f64::max),
+        })
     }
 
     /// Tolerances in the operation of this name.

@@ -35,7 +35,7 @@ use post_machine::description::BlendRule;
 
 use super::kink::Kink;
 use super::profile::Ramp;
-use super::round::{RoundedCorner, SmoothCorner, SmoothCorners};
+use super::round::{CornerBound, RoundedCorner, SmoothCorner, SmoothCorners};
 use super::side::CornerSide;
 use crate::CornerMode;
 use crate::limits::AxisLimits;
@@ -80,8 +80,13 @@ impl Junction {
             CornerMode::Stop => return Self::Stop,
             CornerMode::Path if overlaps => return Self::Stop,
             CornerMode::Path => None,
-            CornerMode::Blend { .. } if overlaps => return Self::overlap(sides, rules),
-            CornerMode::Blend { tolerance } => Some(tolerance),
+            CornerMode::Blend { .. } | CornerMode::Within { .. } if overlaps => {
+                return Self::overlap(sides, rules);
+            }
+            CornerMode::Blend { tolerance } => Some(CornerBound { tolerance, within: None }),
+            CornerMode::Within { distance } => {
+                Some(CornerBound { tolerance: None, within: Some(distance) })
+            }
         };
         let Some(kink) = Kink::new(sides, rules) else {
             return match (tolerance, blend) {
@@ -104,7 +109,7 @@ impl Junction {
         let faster = |passes: f64| passes > rate.min(wanted) * (1.0 - SAME);
         if !jerk {
             let circle = match blend {
-                BlendRule::Overlap => RoundedCorner::circle(sides, rules, tolerance),
+                BlendRule::Overlap => RoundedCorner::circle(sides, rules, tolerance.off_path()),
                 BlendRule::Round => None,
             };
             let round = circle.or_else(|| smooth.of(1.0).map(|corner| smooth.rounded(corner)));
@@ -134,6 +139,8 @@ impl Junction {
     fn overlap(sides: [CornerSide; 2], rules: &AxisLimits) -> Self {
         let tolerance = match sides[0].task.corner {
             CornerMode::Blend { tolerance } => tolerance,
+            // No curve within so far of a corner is farther from it.
+            CornerMode::Within { distance } => Some(distance),
             CornerMode::Stop | CornerMode::Path => None,
         };
         let first = sides[0].half;

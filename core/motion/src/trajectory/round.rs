@@ -54,6 +54,22 @@ pub(super) struct RoundedCorner {
     pub bounds: MoveBounds,
 }
 
+/// How far the path may be left at a corner, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct CornerBound {
+    /// Largest distance from the path.
+    pub tolerance: Option<f64>,
+    /// Largest distance from the corner, along the path.
+    pub within: Option<f64>,
+}
+
+impl CornerBound {
+    /// Largest distance from the path: no curve within so far of a corner is farther from it.
+    pub fn off_path(self) -> Option<f64> {
+        self.tolerance.or(self.within)
+    }
+}
+
 /// Corners by the smooth step between two moves.
 pub(super) struct SmoothCorners<'a> {
     found: [&'a MoveLimits; 2],
@@ -83,12 +99,12 @@ impl SmoothCorner {
 }
 
 impl<'a> SmoothCorners<'a> {
-    /// Those that may stray by `tolerance`, mm.
+    /// Those that keep to `bound`.
     pub fn new(
         sides: [CornerSide<'a>; 2],
         rules: &AxisLimits,
         kink: &Kink,
-        tolerance: Option<f64>,
+        bound: CornerBound,
         wanted: f64,
     ) -> Self {
         // The unit of length is that of the first move's parameter.
@@ -104,8 +120,13 @@ impl<'a> SmoothCorners<'a> {
         let cube = wanted * wanted * wanted;
         let mut longest = AMPLE * (bent * wanted * wanted).max((jerked * cube).sqrt());
         longest = longest.min(2.0 * HALF).min(2.0 * HALF / kink.ratio);
-        if let Some(tolerance) = tolerance {
+        if let Some(tolerance) = bound.tolerance {
             longest = longest.min(tolerance / (STRAY * kink.tip.norm()));
+        }
+        if let Some(within) = bound.within {
+            let ways = [sides[0].found.tip_ends[1], sides[1].found.tip_ends[0] * kink.ratio];
+            let way = ways[0].norm().max(ways[1].norm());
+            longest = longest.min(2.0 * within / way);
         }
         let found = [sides[0].found, sides[1].found];
         let limits = PlaceLimits::of(rules);

@@ -6,6 +6,9 @@ use post_plugin::Language;
 use super::astray::{FlowResult, fault};
 use super::variables::{VariableValue, Variables};
 
+/// Names of a Siemens whose index says which spindle or axis is meant: no variables.
+pub(super) const SETTINGS: [&str; 4] = ["S", "M", "LIMS", "ATOL"];
+
 /// Takes what a block sets out of it, with its value as it is in front of the block; `DEF` declares at once.
 pub(super) fn take(
     block: &mut NcBlock,
@@ -29,6 +32,14 @@ pub(super) fn take(
     let mut failed = None;
     block.items.retain(|item| {
         let found = match item {
+            // The speed of a spindle, and its like.
+            NcItem::Assign { variable, .. }
+                if language == Language::Names
+                    && matches!(&**variable, NcExpression::Indexed { name, .. }
+                        if SETTINGS.contains(&name.as_str())) =>
+            {
+                return true;
+            }
             NcItem::Assign { variable, value } => {
                 let name = variables.named(variable);
                 name.and_then(|name| Ok((name, variables.value(value)?)))

@@ -114,6 +114,9 @@ pub(super) fn run(
     for index in 0..words.g.list().len() {
         control.g_code(words.g.list()[index], words, &mut asked)?;
     }
+    if words.more {
+        control.polar_place(words, &asked)?;
+    }
     if std::mem::take(&mut control.cycles.cut_off) && !asked.cycle_off {
         control.report.cycle_cut_off.get_or_insert(control.line);
     }

@@ -1,7 +1,7 @@
 //! The words of one block, by letter: gathered anew for each, and nothing allocated for plain ones.
 
 use nalgebra::Vector3;
-use post_grammar::nc::{Approach, NcBlock, NcItem, NcValue};
+use post_grammar::nc::{Across, Approach, NcBlock, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Joints;
 
@@ -40,6 +40,8 @@ pub(super) struct BlockWords {
     pub more: bool,
     /// The tool axis by `A3=` and so on, program coordinates.
     pub vector: Option<Vector3<f64>>,
+    /// Distance from the origin of X and Y, and angle from X, degrees: `@` and `^` of LinuxCNC.
+    pub polar: [Option<f64>; 2],
     /// Radius of an arc by a name, mm.
     pub radius: Option<f64>,
     /// Full turns of an arc beside its own: `TURN=`.
@@ -86,6 +88,7 @@ impl Default for BlockWords {
             pointless: 0,
             more: false,
             vector: None,
+            polar: [None; 2],
             radius: None,
             turns: None,
             named_axes: 0,
@@ -149,6 +152,7 @@ impl BlockWords {
         if self.more {
             self.more = false;
             self.vector = None;
+            self.polar = [None; 2];
             self.radius = None;
             self.turns = None;
             self.named_axes = 0;
@@ -183,28 +187,40 @@ impl ControlState {
                 }
                 other => self.valued(word.letter, other, words)?,
             };
-            match word.letter {
-                b'G' => {
-                    let code = GCode::of(value).ok_or_else(|| self.no_code(b'G', value))?;
-                    self.add_code(b'G', code, &mut words.g)?;
-                }
-                b'M' => {
-                    let code = m_number(value).ok_or_else(|| self.no_code(b'M', value))?;
-                    self.add_code(b'M', code, &mut words.m)?;
-                }
-                letter @ b'A'..=b'Z' => {
-                    let bit = bit(letter);
-                    if words.present & bit != 0 {
-                        return Err(self.twice(letter));
-                    }
-                    words.present |= bit;
-                    words.values[usize::from(letter - b'A')] = value;
-                    if word.incremental {
-                        words.incremental |= bit;
-                    }
-                }
-                _ => words.more = true,
+            self.add_word(word.letter, value, words)?;
+            if word.incremental {
+                words.incremental |= bit(word.letter);
             }
+        }
+        Ok(())
+    }
+
+    /// A letter and its value.
+    #[inline]
+    pub(super) fn add_word(
+        &self,
+        letter: u8,
+        value: f64,
+        words: &mut BlockWords,
+    ) -> Result<(), Box<Diagnostic>> {
+        match letter {
+            b'G' => {
+                let code = GCode::of(value).ok_or_else(|| self.no_code(b'G', value))?;
+                self.add_code(b'G', code, &mut words.g)?;
+            }
+            b'M' => {
+                let code = m_number(value).ok_or_else(|| self.no_code(b'M', value))?;
+                self.add_code(b'M', code, &mut words.m)?;
+            }
+            b'A'..=b'Z' => {
+                let bit = bit(letter);
+                if words.present & bit != 0 {
+                    return Err(self.twice(letter));
+                }
+                words.present |= bit;
+                words.values[usize::from(letter - b'A')] = value;
+            }
+            _ => words.more = true,
         }
         Ok(())
     }
@@ -223,10 +239,24 @@ impl ControlState {
         value: &NcValue,
         words: &mut BlockWords,
     ) -> Result<f64, Box<Diagnostic>> {
-        if let (NcValue::Approached(approach, _), b'A'..=b'Z') = (value, letter) {
+        if let (NcValue::Approached(approach, inner), b'A'..=b'Z') = (value, letter) {
             match approach {
                 Approach::Incremental => words.incremental |= bit(letter),
                 Approach::Absolute => words.absolute |= bit(letter),
+                Approach::Across(across) => {
+                    let value = self.variables.worth(inner);
+                    let value = value.map_err(|finding| self.placed(*finding).boxed())?;
+                    match across.incremental {
+                        true => words.incremental |= bit(letter),
+                        false => words.absolute |= bit(letter),
+                    }
+                    // An axis that the machine has not is refused elsewhere.
+                    let counted = match self.axis_of(letter) {
+                        Some(place) => self.across(place, *across)?,
+                        None => 1.0,
+                    };
+                    return Ok(value * counted);
+                }
                 Approach::Shortest | Approach::Positive | Approach::Negative => {
                     words.absolute |= bit(letter);
                     words.approached |= bit(letter);
@@ -241,6 +271,27 @@ impl ControlState {
         }
         let value = self.variables.worth(value);
         value.map_err(|finding| self.placed(*finding).boxed())
+    }
+
+    /// Units of the word of a linear axis, as it counts at present, in one unit of a diameter or radius.
+    pub(super) fn across(&self, place: usize, across: Across) -> Result<f64, Box<Diagnostic>> {
+        let scale = libm::fabs(self.axes.scale[place]);
+        let coupled = self.machine.word_map.as_ref().is_some_and(|map| map.is_coupled(place));
+        let known = [1.0, 0.5].iter().any(|known| libm::fabs(scale - known) < 1e-9);
+        let rotary = self.axes.rotary & (1 << place) != 0;
+        if self.face.is_some() || self.wrap_outside.is_some() || coupled || !known || rotary {
+            let message = format!(
+                "{} is said as a diameter or radius, and what its words are here is told by the machine file alone",
+                self.machine.axes[place].name
+            );
+            return Err(self.refuse("nc-word", message));
+        }
+        // Ways of DIAM90 count twice.
+        let doubled = across.incremental
+            && self.axes.cartesian[0] == Some(place)
+            && self.modal.ways_are_radii;
+        let unit = if across.diameter { 0.5 } else { 1.0 };
+        Ok(unit / scale / if doubled { 2.0 } else { 1.0 })
     }
 
     #[cold]

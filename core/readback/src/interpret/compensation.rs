@@ -39,14 +39,6 @@ impl ControlState {
         Ok(())
     }
 
-    /// The control may leave the path by `tolerance` mm; none: it keeps it, or the tolerance is not said.
-    pub(super) fn smooth(&mut self, tolerance: Option<f64>) {
-        if self.state.smoothing != tolerance {
-            self.state.smoothing = tolerance;
-            self.state_changed();
-        }
-    }
-
     /// Length, tool centre point control and edges.
     pub(super) fn compensations(
         &mut self,

@@ -58,14 +58,12 @@ impl ControlState {
                 let letter = code.and_then(|code| self.lexicon.value_letter(code));
                 let tolerance = letter.and_then(|letter| words.take(letter));
                 words.used |= bit(b'P') | bit(b'Q') | bit(b'R');
-                let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
-                let allowed = self.allowed_off_path(code, tolerance);
-                self.smooth(allowed);
-                self.leaves_corners(code, tolerance);
+                let length = |value: f64| value * self.modal.unit;
+                let (tolerance, merged) = (tolerance.map(length), words.get(b'Q').map(length));
+                self.leaves_corners(code, tolerance, merged);
             }
             Meaning::SmoothingOff => {
                 words.used |= bit(b'Q') | bit(b'P');
-                self.smooth(None);
                 self.keeps_corners(code);
             }
             Meaning::ExactStop => self.exact_stop = true,

@@ -43,6 +43,7 @@ mod meanings;
 mod mode_words;
 mod names;
 pub(crate) mod planes;
+mod polar;
 mod relied;
 mod robot_frames;
 mod run;

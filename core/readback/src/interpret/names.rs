@@ -1,17 +1,18 @@
 //! What a block says besides letters with values: names, calls, texts.
 
-use post_grammar::nc::{NcBlock, NcItem, NcValue};
+use post_grammar::nc::{NcBlock, NcExpression, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
+use super::assigned::SETTINGS;
 use super::block::BlockRequest;
 use super::block_words::{BlockWords, which};
 use super::spindle_request::SpindleRequest;
 use super::state::ControlState;
 use super::{cycles, frames, planes};
-use crate::ProgramEvent;
 use crate::g_code::GCode;
 use crate::lexicon::WordMeaning;
+use crate::{ProgramEvent, SpindleState};
 
 /// Takes what `gather` left.
 pub(super) fn take(
@@ -29,6 +30,9 @@ pub(super) fn take(
                     control.tools.ready_name = Some(name.clone());
                     control.tools.ready = None;
                 }
+                if let b'@' | b'^' = word.letter {
+                    control.polar_word(word.letter, &word.value, words)?;
+                }
             }
             NcItem::Named { name, value } => control.named(name, value, words, asked)?,
             NcItem::Name(name) => {
@@ -44,6 +48,13 @@ pub(super) fn take(
             NcItem::Call { name, arguments } => {
                 control.call(name, arguments, modal_call, words, asked)?;
                 modal_call = false;
+            }
+            NcItem::Assign { variable, value }
+                if control.lexicon.language() == Language::Names
+                    && let NcExpression::Indexed { name, index } = &**variable
+                    && SETTINGS.contains(&name.as_str()) =>
+            {
+                control.indexed(name, index, value, words)?;
             }
             NcItem::Assign { .. } | NcItem::Flow(_) => {
                 return Err(control.refuse("nc-flow", "what leads the program elsewhere, or sets a variable, stands among words of motion"));
@@ -61,6 +72,116 @@ pub(super) fn take(
 }
 
 impl ControlState {
+    /// `LIMS[1]=2000`, `S[1]=500`, `M[1]=3`.
+    fn indexed(
+        &mut self,
+        name: &str,
+        index: &NcExpression,
+        value: &NcExpression,
+        words: &mut BlockWords,
+    ) -> Result<(), Box<Diagnostic>> {
+        let worth = |control: &Self, value: &NcExpression| {
+            let number = control.variables.number(value);
+            number.map_err(|finding| control.placed(*finding).boxed())
+        };
+        if name == "ATOL" {
+            let axis = match index {
+                NcExpression::Variable(axis) => axis.clone(),
+                _ => "an axis".to_owned(),
+            };
+            let message = format!(
+                "ATOL of {axis} is not followed: how far it lets the control leave the path is not compared with the tolerance"
+            );
+            self.note(Diagnostic::warning("smoothing", message));
+            return Ok(());
+        }
+        let number = which(b'S', worth(self, index)?, self)?;
+        let value = worth(self, value)?;
+        if name == "LIMS" {
+            // Another spindle turns nothing that is followed here.
+            if number == self.modal.master_spindle {
+                self.limit_speed(Some(value));
+            }
+            return Ok(());
+        }
+        self.for_spindle(name.as_bytes()[0], number, value, words)
+    }
+
+    /// The letter and the spindle of `S1`, `M1`.
+    fn spindle_word(&self, name: &str) -> Option<(u8, u32)> {
+        let letter = *name.as_bytes().first().filter(|letter| matches!(letter, b'S' | b'M'))?;
+        let number = name.get(1..)?.parse().ok()?;
+        (self.lexicon.language() == Language::Names).then_some((letter, number))
+    }
+
+    /// S or M for one of the spindles: that of the master spindle is the plain word.
+    fn for_spindle(
+        &mut self,
+        letter: u8,
+        number: u32,
+        value: f64,
+        words: &mut BlockWords,
+    ) -> Result<(), Box<Diagnostic>> {
+        let master = self.modal.master_spindle;
+        if number != master {
+            let name = char::from(letter);
+            let message = format!(
+                "{name}{number}= speaks to spindle {number}, and the one that is followed here is the master spindle, {master}"
+            );
+            return Err(self.refuse("nc-word", message));
+        }
+        self.add_word(letter, value, words)
+    }
+
+    /// `SETMS(1)`, `SETMS`: which spindle is the master; false for any other name.
+    fn master_spindle(
+        &mut self,
+        name: &str,
+        arguments: &[Option<NcValue>],
+    ) -> Result<bool, Box<Diagnostic>> {
+        if name != "SETMS" || self.lexicon.language() != Language::Names {
+            return Ok(false);
+        }
+        let number = match arguments.first() {
+            Some(Some(value)) => {
+                let worth = self.variables.worth(value);
+                which(b'S', worth.map_err(|finding| self.placed(*finding).boxed())?, self)?
+            }
+            _ => 1,
+        };
+        let stands = matches!(self.state.spindle, SpindleState::Off | SpindleState::Oriented);
+        if number != self.modal.master_spindle && !stands {
+            let message = format!(
+                "spindle {number} becomes the master while spindle {} turns, and only one of them is followed",
+                self.modal.master_spindle
+            );
+            return Err(self.refuse("nc-word", message));
+        }
+        self.modal.master_spindle = number;
+        Ok(true)
+    }
+
+    /// By how many degrees CYCLE832 lets the tool axis be turned off: its third argument where the tens of the second are
+    /// 1, or its name says so.
+    fn turn_of_cycle(&self, arguments: &[Option<NcValue>]) -> Result<Option<f64>, Box<Diagnostic>> {
+        let [_, Some(kind), Some(turn), ..] = arguments else {
+            return Ok(None);
+        };
+        let has_turn = match kind {
+            NcValue::Number(number) => (10.0..20.0).contains(&number.value),
+            NcValue::Expression(name) => match &**name {
+                NcExpression::Variable(name) => name.starts_with("_ORI_"),
+                _ => false,
+            },
+            _ => false,
+        };
+        if !has_turn {
+            return Ok(None);
+        }
+        let worth = self.variables.worth(turn);
+        worth.map(Some).map_err(|finding| self.placed(*finding).boxed())
+    }
+
     /// A name with a value: `A3=0.5`, `CR=5`, an axis of a longer name.
     fn named(
         &mut self,
@@ -76,6 +197,10 @@ impl ControlState {
         let worth = |control: &Self| {
             control.variables.worth(value).map_err(|finding| control.placed(*finding).boxed())
         };
+        if let Some((letter, number)) = self.spindle_word(name) {
+            let value = worth(self)?;
+            return self.for_spindle(letter, number, value, words);
+        }
         let mut part = |row: usize| -> Result<(), Box<Diagnostic>> {
             words.vector.get_or_insert_default()[row] = worth(self)?;
             Ok(())
@@ -110,11 +235,12 @@ impl ControlState {
                 let distance = worth(self)?;
                 self.rounding_distance(distance);
             }
-            WordMeaning::Means(Meaning::Nothing | Meaning::Smoothing) => {}
-            WordMeaning::Means(Meaning::SmoothingOff) => {
-                self.smooth(None);
-                self.keeps_corners(None);
+            WordMeaning::Means(Meaning::Nothing) if name == "OTOL" => {
+                let angle = worth(self)?;
+                self.turn_tolerance(angle);
             }
+            WordMeaning::Means(Meaning::Nothing | Meaning::Smoothing) => {}
+            WordMeaning::Means(Meaning::SmoothingOff) => self.keeps_corners(None),
             WordMeaning::Means(Meaning::SpindleOrient) => {
                 asked.spindle = Some(SpindleRequest::Oriented)
             }
@@ -151,10 +277,16 @@ impl ControlState {
         };
         let worth = self.variables.worth(value).map_err(|finding| self.placed(*finding).boxed())?;
         let rotary = self.axes.rotary & (1 << place) != 0;
-        let worth = worth * self.axes.scale[place];
+        let across = match approach {
+            Some(Approach::Across(across)) => Some(across),
+            _ => None,
+        };
+        let counted = across.map_or(Ok(1.0), |across| self.across(place, across))?;
+        let worth = worth * counted * self.axes.scale[place];
         let length = if rotary { worth.to_radians() } else { worth * self.modal.unit };
         let way = match approach {
             Some(Approach::Incremental) => true,
+            Some(Approach::Across(across)) => across.incremental,
             Some(_) => false,
             None => self.modal.incremental,
         };
@@ -183,7 +315,7 @@ impl ControlState {
         words: &mut BlockWords,
         asked: &mut BlockRequest,
     ) -> Result<(), Box<Diagnostic>> {
-        if frames::name(self, name, words)? {
+        if frames::name(self, name, words)? || self.master_spindle(name, &[])? {
             return Ok(());
         }
         match self.lexicon.name(name) {
@@ -238,6 +370,11 @@ impl ControlState {
                 let radius = diameter.map(|diameter| diameter * self.modal.unit / 2.0);
                 return self.begin_wrap(radius, name);
             }
+            (_, WordMeaning::Means(Meaning::SmoothingOff))
+                if self.lexicon.language() == Language::Names =>
+            {
+                self.smoothing_cycle_off();
+            }
             (_, WordMeaning::Means(Meaning::Smoothing)) => {
                 let tolerance = match arguments.first() {
                     Some(Some(NcValue::Text(words))) => deviation_in(words),
@@ -249,9 +386,12 @@ impl ControlState {
                     _ => None,
                 };
                 let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
-                let allowed = self.allowed_off_path(None, tolerance);
-                self.smooth(allowed);
-                self.leaves_corners(None, tolerance);
+                if self.lexicon.language() == Language::Names {
+                    let turn = self.turn_of_cycle(arguments)?;
+                    self.smoothing_cycle(tolerance, turn);
+                } else {
+                    self.leaves_corners(None, tolerance, None);
+                }
             }
             (
                 _,
@@ -271,6 +411,7 @@ impl ControlState {
                 return cycles::call(self, name, meaning, arguments, modal);
             }
             (_, WordMeaning::Means(Meaning::Nothing)) => {}
+            _ if self.master_spindle(name, arguments)? => {}
             (_, WordMeaning::Means(meaning)) => return self.meant(None, meaning, words, asked),
             _ => {
                 let message = format!(

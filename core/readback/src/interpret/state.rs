@@ -172,12 +172,10 @@ pub(super) struct ModalState {
     pub centres_absolute: bool,
     /// mm in one unit of a word.
     pub unit: f64,
-    /// Distance by which smoothing may leave the contour, mm: CTOL of Siemens.
-    pub contour_tolerance: Option<f64>,
-    /// Distance from its corners within which the control may leave the path under G641, mm: ADIS of Siemens.
-    pub rounding_distance: f64,
-    /// G641 holds: corners are left by a distance.
-    pub rounds_by_distance: bool,
+    /// What a Siemens was told of smoothing.
+    pub smoothing: super::corners::NamedSmoothing,
+    /// The spindle that S and M3 speak to, by Siemens' SETMS.
+    pub master_spindle: u32,
     /// How F counts.
     pub feed_mode: FeedMeaning,
     /// F: mm/min, 1/min (or 1/s as the machine file has it) or mm a revolution; of rotary axes alone deg/min or a

@@ -48,8 +48,8 @@ use post_plugin::Lengths;
 
 use crate::course::Course;
 use crate::{
-    BlockEffect, CycleKind, MOST_FAULTS, MachineState, Motion, MotionKind, Offsets, ProgramEvent,
-    SpindleState,
+    BlockEffect, CycleKind, Leeway, MOST_FAULTS, MachineState, Motion, MotionKind, Offsets,
+    ProgramEvent, SpindleState,
 };
 pub use axes::{AxisFault, AxisLimitCheck};
 pub use cut_bounds::CutBounds;
@@ -237,8 +237,8 @@ pub struct Verifier<'m, C> {
     turned: Vec<SpindleCommand>,
     /// Whether the program has moved since the last command of the spindle.
     moved: bool,
-    /// Distance by which the control may leave the path, as it was looked at last, mm.
-    smoothing: f64,
+    /// How far the control may leave the path, as it was looked at last.
+    smoothing: Leeway,
     /// The work offsets that were cut in, each by the number that the course asks for.
     worked: Vec<(Option<u32>, String)>,
     detour: Detour,
@@ -302,7 +302,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             worked: Vec::new(),
             turned: Vec::new(),
             moved: false,
-            smoothing: 0.0,
+            smoothing: Leeway::default(),
             detour: Detour::default(),
             running: RunningFunctions::default(),
             agreed: None,

@@ -11,7 +11,7 @@ use super::report::BlockPlace;
 use super::Verifier;
 use super::track::Element;
 use crate::course::Course;
-use crate::{Coolants, Motion, ProgramEvent, SpindleState, smooths_beyond};
+use crate::{Coolants, Motion, ProgramEvent, SpindleState};
 
 /// Share of a printed speed or feed that is rounding.
 pub(super) const SHARE: f64 = 0.005;
@@ -28,6 +28,10 @@ pub(super) const SHORT: f64 = 1e-3;
 impl<C: Course> Verifier<'_, C> {
     /// Compares what holds in a cut with what the course asks for where the motion has its place.
     pub(super) fn compare(&mut self, motion: &Motion, places: &[ToolPlace]) {
+        if motion.machine && !self.rules.work_offsets {
+            let message = "cuts in positions of the machine: where that is on the part hangs on where the part sits, which no work offset says";
+            self.fault("work-offset", message.to_owned(), Some(motion), None, None);
+        }
         if let Some(asked) = self.asks_as_before(motion)
             && self.keeps_feed(motion, places, asked)
         {
@@ -177,12 +181,13 @@ impl<C: Course> Verifier<'_, C> {
     /// What the control may leave the path by is told where it is more than the tolerance and than the machine file's
     /// own: how far it does leave it follows from its accelerations.
     fn compare_smoothing(&mut self, motion: &Motion) {
-        let off_path = motion.state.off_path();
-        if off_path == self.smoothing {
+        let leeway = motion.state.leeway();
+        if leeway == self.smoothing {
             return;
         }
-        self.smoothing = off_path;
-        if let Some(message) = smooths_beyond(off_path, self.machine, self.rules.tolerance) {
+        self.smoothing = leeway;
+        let (tolerance, axis_tolerance) = (self.rules.tolerance, self.rules.axis_tolerance);
+        for message in leeway.beyond(self.machine, tolerance, axis_tolerance) {
             self.left_on(motion.line, "smoothing", message);
         }
     }

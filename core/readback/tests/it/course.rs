@@ -44,6 +44,7 @@ fn state(solver: &Arc<Solver>) -> Arc<MachineState> {
         standstill: Default::default(),
         operation: None,
         smoothing: None,
+        smoothing_turn: 0.0,
         corners: Corners::Unsaid,
     })
 }

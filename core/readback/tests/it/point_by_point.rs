@@ -154,6 +154,7 @@ fn what_is_found_does_not_hang_on_whether_each_line_is_told() {
         standstill: Default::default(),
         operation: None,
         smoothing: None,
+        smoothing_turn: 0.0,
         corners: Corners::Unsaid,
     });
     let (rounds, mut rng) = randomised(300, 284);

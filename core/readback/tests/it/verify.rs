@@ -159,6 +159,7 @@ impl Does {
             standstill: Default::default(),
             operation: None,
             smoothing: None,
+            smoothing_turn: 0.0,
             corners: Corners::Unsaid,
         };
         Self { done: Vec::new(), state: Arc::new(state), at: v(x, y, z), line: 0 }

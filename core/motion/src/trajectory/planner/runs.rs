@@ -97,7 +97,10 @@ impl Planner {
 
     /// The last move up to its corner, which takes the share `out`.
     fn along(&mut self, last: &OpenMove, out: f64, junction: Junction) {
-        let blends = matches!(self.law.task(last.number).corner, CornerMode::Blend { .. });
+        let blends = matches!(
+            self.law.task(last.number).corner,
+            CornerMode::Blend { .. } | CornerMode::Within { .. }
+        );
         let shared = match junction {
             Junction::Overlap { .. } => true,
             Junction::Stop => blends && self.blend == BlendRule::Overlap,

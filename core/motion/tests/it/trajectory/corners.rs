@@ -62,6 +62,40 @@ fn corners_are_blended_within_their_tolerance() {
     }
 }
 
+/// Within a distance of the corner it is left, and not farther off; without a tolerance the distance alone bounds it.
+#[test]
+fn corners_are_rounded_within_their_distance() {
+    let (rounds, mut rng) = randomised(40u16, 33);
+    for round in rounds {
+        let blend = ["overlap", "round"][usize::from(round % 2)];
+        let machine = trunnion(
+            "max_feed = 30000, max_accel = 2000",
+            "max_feed = 7200, max_accel = 600",
+            &format!("period = 0.0002\nblend = \"{blend}\""),
+        );
+        let distance = rng.order(-1.5, 0.5);
+        let (turn, feed) = (rng.range(0.3, 2.5), rng.order(3.5, 4.3));
+        let strays = |corner: CornerMode| {
+            let (program, [a, b, c]) = square(&machine, turn, corner, feed);
+            let run = run(&machine, &program.tasks, &program.solver, 1000);
+            let places = run.points.poses.iter().map(|pose| pose.tip);
+            let places =
+                places.map(|tip| (off(tip, [a, b]).min(off(tip, [b, c])), (tip - b).norm()));
+            places.filter(|(stray, _)| *stray > 1e-6).collect::<Vec<_>>()
+        };
+        let rounded = strays(CornerMode::Within { distance });
+        let most = rounded.iter().map(|(stray, _)| *stray).fold(0.0, f64::max);
+        assert!(most <= distance, "{blend} {turn}: {most}, {distance}");
+        if blend == "round" {
+            assert!(!rounded.is_empty(), "{turn} {feed} {distance}");
+            for (stray, from) in rounded {
+                assert!(from <= distance * (1.0 + 1e-9), "{stray} off at {from}, {distance}");
+            }
+        }
+        assert!(strays(CornerMode::Path).is_empty());
+    }
+}
+
 #[test]
 fn where_a_standstill_is_asked_for_the_end_is_reached() {
     let mut rng = seeded(32);

@@ -65,11 +65,13 @@ pub(super) fn define(
         (32, 1) => {
             let tolerance = words.take(b'T').map(|tolerance| tolerance * control.modal.unit);
             let tolerance = tolerance.filter(|tolerance| *tolerance > 0.0);
-            control.smooth(tolerance);
-            control.leaves_corners(None, tolerance);
+            control.leaves_corners(None, tolerance, None);
             Ok(())
         }
         (32, _) => {
+            if let Some(angle) = said.named(control, "TA")? {
+                control.leaves_axis(angle);
+            }
             words.used |= words.present;
             Ok(())
         }

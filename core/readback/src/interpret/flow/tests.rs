@@ -95,6 +95,17 @@ fn o_words_branch_loop_and_call() {
     assert_eq!(run(Language::Rs274, program), [1.0, 4.0, 4.0, 4.0, 3.0, 42.0, 3.0, 4.0]);
 }
 
+/// What a subprogram hands on is no reason to refuse it; who reads it is told that it is not known.
+#[test]
+fn subprograms_hand_on_a_value() {
+    let program = "o100 sub\nX#1\no1 if [#1 gt 4]\no100 return [#1 * 2]\no1 endif\nX9\no100 endsub [7]\n\
+                   o100 call [5]\no100 call [3]\nX1\nM30\n";
+    assert_eq!(run(Language::Rs274, program), [5.0, 3.0, 9.0, 1.0]);
+    let program = program.replace("X1\n", "X#<_value>\n");
+    let fault = run_with(Language::Rs274, &program, Limits::default()).1.unwrap();
+    assert!(fault.to_uppercase().contains("#<_VALUE>"), "{fault}");
+}
+
 #[test]
 fn branches_and_loops_of_names() {
     let program = "DEF REAL _A, _B=2.5\nDEF INT N_C\nR1=1\nN_C=2.4\nIF R1==1\nX1\nELSE\nX2\nENDIF\nIF R1>1\nX3\nELSE\nX4\nENDIF\n\

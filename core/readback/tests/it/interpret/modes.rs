@@ -205,6 +205,20 @@ fn words_say_how_corners_are_passed() {
             once
         ]
     );
+    // G641 rounds within ADIS, and as G64 does where that is not said; CTOL is nothing to it, and G64 leaves a compressor on.
+    let program =
+        "G1 F500 X1 G641\nADIS=0.5 CTOL=0.1\nX2\nCOMPCAD X3\nG64 X4\nCOMPOF X5\nG644 X6\n";
+    assert_eq!(
+        corners(&ran_in(Language::Names, &machine, NAMES, &Offsets::default(), program).whole()),
+        [
+            blend(None),
+            said(CornerMode::Within { distance: 0.5 }),
+            blend(Some(0.1)),
+            blend(Some(0.1)),
+            blend(None),
+            (Corners::Own, false),
+        ]
+    );
 }
 
 #[test]
@@ -217,6 +231,25 @@ fn reference_positions_are_approached_by_way_of_the_point() {
     assert!((machine.axes[z].reading(ends[2])).abs() < 1e-9);
     assert!(done.motions[2].machine);
     assert!(done.report.notes.iter().any(|note| note.message.contains("reference positions")));
+}
+
+/// LinuxCNC's `@` and `^` are distance and angle about the origin of X and Y; what is not said stays.
+#[test]
+fn polar_words_lead_about_the_origin() {
+    let machine = machine("vmc");
+    let program = "G21 G90 G94 G1 F500 Z0\n@10 ^90\n^[45*4]\n@5\nG20 @1 ^0\n";
+    let done = ran_in(Language::Rs274, &machine, NAMES, &Offsets::default(), program).whole();
+    let ends: Vec<[f64; 2]> =
+        done.motions.iter().map(|motion| [motion.to.pose.tip.x, motion.to.pose.tip.y]).collect();
+    let due = [[0.0, 10.0], [-10.0, 0.0], [-5.0, 0.0], [25.4, 0.0]];
+    let last = &ends[ends.len() - due.len()..];
+    for (end, due) in last.iter().zip(due) {
+        assert!(libm::hypot(end[0] - due[0], end[1] - due[1]) < 1e-9, "{ends:?}");
+    }
+    // Fanuc has no such words, and beside X they say two things.
+    assert_eq!(letters(&machine, "G0 X0 Y0\nG1 @5 ^0 F100.\n").refused.len(), 1);
+    let both = ran_in(Language::Rs274, &machine, NAMES, &Offsets::default(), "G1 F1 X1 @5\n");
+    assert_eq!(both.refused.len(), 1);
 }
 
 #[test]

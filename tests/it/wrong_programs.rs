@@ -82,24 +82,36 @@ FINI
 /// What changes in a program: every occurrence of the first text becomes the second.
 type Change<'a> = (&'a str, &'a str);
 
-/// A job on the library's `vmc` in one of its dialects.
+/// A job on a machine of the library in one of its dialects.
 struct Posted {
     folder: tempfile::TempDir,
+    machine: &'static str,
     dialect: &'static str,
     text: String,
 }
 
 impl Posted {
+    /// On the `vmc`.
     fn new(cl: &str, dialect: &'static str) -> Self {
+        Self::on("vmc", cl, dialect)
+    }
+
+    fn on(machine: &'static str, cl: &str, dialect: &'static str) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let posted = Self { folder, dialect, text: String::new() };
+        let posted = Self { folder, machine, dialect, text: String::new() };
         fs::write(posted.path("part.cls"), cl).unwrap();
         let (cl, nc) = (posted.path("part.cls"), posted.path("part.nc"));
-        let job = ["-m", "vmc", "--tool-length", "100", "--dialect", dialect];
+        let job = posted.job();
         let run = post(&[&["-q", "--verify", "-o", &nc, &cl][..], &job].concat());
         assert_eq!(run.code, 0, "{dialect}: {}", run.err);
         let text = fs::read_to_string(&nc).unwrap();
         Self { text, ..posted }
+    }
+
+    fn job(&self) -> [&'static str; 6] {
+        // The router has 80 mm of Z.
+        let length = if self.machine == "grbl-router" { "20" } else { "100" };
+        ["-m", self.machine, "--tool-length", length, "--dialect", self.dialect]
     }
 
     fn path(&self, name: &str) -> String {
@@ -109,7 +121,7 @@ impl Posted {
     fn verify(&self, text: &str, more: &[&str]) -> crate::common::Run {
         let (cl, nc) = (self.path("part.cls"), self.path("changed.nc"));
         fs::write(&nc, text).unwrap();
-        let job = ["-m", "vmc", "--tool-length", "100", "--dialect", self.dialect];
+        let job = self.job();
         post(&[&["verify", "-q", &nc, "--against", &cl][..], &job, more].concat())
     }
 
@@ -249,7 +261,10 @@ fn smoothing_beyond_the_tolerance_is_told() {
     let changed = linuxcnc.verify(&text, &[]);
     assert!(changed.err.contains(more), "{}", changed.err);
     let any = "warning[smoothing]: the control may leave the path by any distance, and the tolerance is 0.005 mm";
+    // There P0 is no tolerance, and Q merges points by as much as it says.
     linuxcnc.told(("G61\n", "G64\n"), any);
+    linuxcnc.told(("G61\n", "G64 P0\n"), any);
+    linuxcnc.told(("G61\n", "G64 P0.001 Q1\n"), more);
     for words in ["G641 ADIS=1", "G641\nADIS=1", "G642 CTOL=1", "G645 CTOL=1"] {
         siemens.told(("G54\n", &format!("G54\n{words}\n")), more);
     }
@@ -259,6 +274,26 @@ fn smoothing_beyond_the_tolerance_is_told() {
         let changed = siemens.verify(&text, &[]);
         assert!(!changed.err.contains("smoothing"), "{words}: {}", changed.err);
     }
+    // OTOL is degrees of the tool axis, under what goes by tolerances.
+    let turned = "warning[smoothing]: the control may turn the tool axis off by 5°, and the tolerance is 0.05°";
+    let five = Posted::on("ac-trunnion-840d", CORNER, "siemens");
+    for words in [
+        "G642 OTOL=5",
+        "COMPCAD CTOL=0.001\nOTOL=5",
+        "CYCLE832(0.001,11,5)",
+        "CYCLE832(0.001,_ORI_FINISH,5)",
+    ] {
+        five.told(("G54\n", &format!("G54\n{words}\n")), turned);
+    }
+    for words in ["OTOL=5", "G641 OTOL=5", "COMPCAD OTOL=5\nCOMPOF", "CYCLE832(0.001,1,5)"] {
+        let text = five.text.replacen("G54\n", &format!("G54\n{words}\n"), 1);
+        let changed = five.verify(&text, &[]);
+        assert!(!changed.err.contains("smoothing"), "{words}: {}", changed.err);
+    }
+    let heidenhain = Posted::on("dmu50", CORNER, "heidenhain");
+    let cycle =
+        "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.001\nCYCL DEF 32.2 HSC-MODE:0 TA5\nM127\n";
+    heidenhain.told((" M127\n", &format!(" {cycle}")), turned);
     let fagor = Posted::new(CONTOUR, "fagor");
     fagor.told(("G54\n", "G54\n#HSC ON [CONTERROR 1]\n"), more);
     let haas = Posted::new(CONTOUR, "haas");
@@ -718,18 +753,113 @@ fn no_rapid_plunges_where_nothing_is_asked_for() {
     );
 }
 
+/// A slot about a corner.
+const CORNER: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/20,0,50\nFEDRAT/200,MMPM\nGOTO/20,0,-2\n\
+                      GOTO/20,30,-2\nGOTO/-20,30,-2\nRAPID\nGOTO/-20,30,50\nFINI\n";
+
 /// The tool that is in the spindle already is called and changed while it cuts.
 #[test]
 fn no_tool_is_changed_in_the_midst_of_a_cut() {
-    let cl = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/20,0,50\nFEDRAT/200,MMPM\nGOTO/20,0,-2\n\
-              GOTO/20,30,-2\nGOTO/-20,30,-2\nRAPID\nGOTO/-20,30,50\nFINI\n";
-    for dialect in ["fanuc", "haas", "linuxcnc", "mazak", "siemens"] {
-        let posted = Posted::new(cl, dialect);
-        let line = posted.text.lines().find(|line| line.contains("Y30.000")).unwrap();
-        let changed = format!("T1 M6\n{line}\n");
-        posted.told(
-            (&format!("{line}\n"), &changed),
-            "error[tool]: the tool is changed in the midst of a cut",
-        );
+    let midst = "error[tool]: the tool is changed in the midst of a cut";
+    let letters =
+        ["fanuc", "haas", "hurco", "isg", "linuxcnc", "mazak", "mitsubishi", "siemens", "syntec"];
+    let mut posted: Vec<(Posted, &[&str])> =
+        letters.map(|dialect| (Posted::new(CORNER, dialect), &["T1 M6"][..])).into();
+    posted
+        .push((Posted::new(CORNER, "heidenhain"), &["TOOL CALL 1 Z S3000", "TOOL CALL 2 Z S3000"]));
+    // The operator changes it at M0.
+    posted.push((Posted::on("grbl-router", CORNER, "grbl"), &["T1\nM0", "T2\nM0", "T1 M0"]));
+    posted.push((Posted::on("osp-mill", CORNER, "okuma"), &["T1 M6", "T1\nM6"]));
+    for (posted, changes) in posted {
+        let line =
+            posted.text.lines().find(|line| line.replace('+', "").contains("Y30.000")).unwrap();
+        for change in changes {
+            posted.told((&format!("{line}\n"), &format!("{change}\n{line}\n")), midst);
+        }
     }
+}
+
+/// What G53 leads to is a position of the machine, and Fanuc goes there at rapid.
+#[test]
+fn no_cut_goes_to_positions_of_the_machine() {
+    let posted = Posted::new(CORNER, "fanuc");
+    posted
+        .told(("Y30.000\n", "G53 Y30.\n"), "error[work-offset]: cuts in positions of the machine");
+}
+
+/// A Siemens may name the spindle, and say a diameter or a radius in a word.
+#[test]
+fn spindles_by_number_and_diameters_in_a_word_are_read() {
+    let posted = Posted::new(CORNER, "siemens");
+    for (from, to) in [
+        ("S3000 M3\n", "S1=3000 M1=3\n"),
+        ("S3000 M3\n", "SETMS(1)\nS[1]=3000 M[1]=3\n"),
+        ("M5\n", "M1=5\n"),
+        ("M6\n", "M6\nLIMS[1]=5000\n"),
+        ("X20.000 ", "X=DAC(40) "),
+        ("X20.000 ", "X=RAC(20) "),
+        (" X-20.000\n", " X=RIC(-40)\n"),
+        (" X-20.000\n", " X=DIC(-80)\n"),
+    ] {
+        let text = posted.text.replace(from, to);
+        assert_ne!(text, posted.text, "{from}");
+        let right = posted.verify(&text, &[]);
+        assert_eq!(right.code, 0, "{to}: {}", right.err);
+    }
+    posted.told(("S3000 M3\n", "S1=2000 M1=3\n"), "error[spindle]: ");
+    posted.told(("S3000 M3\n", "S2=3000 M2=3\n"), "error[nc-word]: S2= speaks to spindle 2");
+    posted.told((" X-20.000\n", " X=DIC(-40)\n"), "error[");
+    posted.told(("X20.000 ", "X=DAC(20) "), "error[");
+}
+
+/// A cycle of Heidenhain has parameters of its own, each of them once.
+#[test]
+fn a_cycle_has_all_its_parameters_and_no_others() {
+    let posted = Posted::new(HOLES, "heidenhain");
+    let depth = "    Q201=-12 ;DEPTH ~\n";
+    assert!(posted.text.contains(depth), "{}", posted.text);
+    for (from, to, message) in [
+        (
+            "Q202=+12 ;",
+            "Q208=+12 ;",
+            "error[nc-cycle]: CYCL DEF 200: Q208 is no parameter of this cycle",
+        ),
+        (
+            "Q210=+0 ;",
+            "Q1201=+0 ;",
+            "error[nc-cycle]: CYCL DEF 200: Q1201 is no parameter of this cycle",
+        ),
+        ("Q204=+25 ;", "Q200=+25 ;", "error[nc-cycle]: CYCL DEF 200: Q200 is given twice"),
+        (
+            "    Q210=+0 ;DWELL TIME AT TOP ~\n",
+            "",
+            "error[nc-cycle]: CYCL DEF 200: Q210 is not given",
+        ),
+    ] {
+        posted.told((from, to), message);
+    }
+    // Older software has not this one.
+    let older = posted.text.replace(" ~\n    Q395=+0 ;DEPTH REFERENCE\n", "\n");
+    assert_ne!(older, posted.text);
+    let right = posted.verify(&older, &[]);
+    assert_eq!(right.code, 0, "{}", right.err);
+}
+
+/// An arm leaves what it has cut along the line of its tool: its rapid turns the base by a wrong sign, and comes back.
+#[test]
+fn an_arm_does_not_leave_a_cut_aside() {
+    let posted = Posted::on("kr6-r700", CORNER, "siemens");
+    let (_, cuts) = posted.text.split_once("G93 G1 ").unwrap();
+    let line = cuts.lines().find(|line| line.contains(" G0 ") && line.contains(" A-")).unwrap();
+    posted.told((line, &line.replace(" A-", " A")), "error[rapid]: a rapid leaves what is cut ");
+}
+
+/// Behind the last cut the tool goes back into it at feed, and its spindle stands.
+#[test]
+fn no_tool_comes_back_to_a_cut_while_its_spindle_stands() {
+    let posted = Posted::new(CORNER, "fanuc");
+    posted.told(
+        ("G0 Z50.000\n", "G0 Z50.000\nM5\nG1 Z-2. F200.\nG0 Z50.\n"),
+        "error[spindle]: the spindle stands where the tool comes back to a cut",
+    );
 }

@@ -26,8 +26,9 @@ const SAME_LINE: f64 = 1e-3;
 /// on the line of the tool at one of its places, and other axes stand between those places only if the tool was
 /// retracted; in another program nothing is said of the other axes while one turns. An arm is held by its tip, not by its
 /// axes: in a program that was posted it stands on a way of the course or on the line of the tool at one of its places, or
-/// the tool is retracted; in another it comes no lower than at all places that are asked for, as the tool stands there. No
-/// rapid goes down to where the last cut ended but on the line of the tool there. Of a machine whose ways between
+/// the tool is retracted; in another it comes no lower than at all places that are asked for, as the tool stands there
+/// (between two faces of the part, in the box that these places span). No rapid goes down to where the last cut ended but
+/// on the line of the tool there. Of a machine whose ways between
 /// passes are those that bodies leave (`low_retracts`, `link`) it is said of positions of the machine alone that the
 /// depth goes no deeper than at all places that are asked for, and nothing of where axes turn: that is a matter of
 /// clearance.
@@ -255,8 +256,8 @@ impl RapidEnd {
     }
 
     /// The tip of an arm stands lower than at all places that are asked for, as the tool stands there, or goes down to where
-    /// the last cut ended. Nothing is said where the tool stands on two faces of the part: past which side it goes from one
-    /// to the other is its own business.
+    /// the last cut ended. Where the tool stands on two faces of the part, past which side it goes from one to the other is
+    /// its own business, but not between them: below all of those places, in the box that they span.
     fn tip_low<'p>(
         &self,
         asked: &[AskedPlace],
@@ -265,7 +266,14 @@ impl RapidEnd {
     ) -> Option<StrayRapid> {
         let first = &asked.first()?.pose.axis;
         let faces = asked.iter().any(|asked| on_two_faces(first, &asked.pose.axis));
-        if self.led || faces || poses.any(|pose| self.off_line(pose, slack) <= slack) {
+        if self.led || poses.any(|pose| self.off_line(pose, slack) <= slack) {
+            return None;
+        }
+        let tips = || asked.iter().map(|asked| asked.pose.tip);
+        let least = tips().reduce(|least, tip| least.inf(&tip)).unwrap_or_default();
+        let most = tips().reduce(|most, tip| most.sup(&tip)).unwrap_or_default();
+        let tip = &self.pose.tip;
+        if faces && (tip.inf(&least) != least || tip.sup(&most) != most) {
             return None;
         }
         let falls = |pose: &Pose| (self.came - self.pose.tip).dot(&pose.axis) > slack;

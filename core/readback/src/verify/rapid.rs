@@ -42,11 +42,17 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.look_along_the_next_cut(motion, places);
         let asked = asked || self.may_begin(end);
+        let cut_end = self.cut_end;
         let leaves = self.leaves_along_itself(places);
         if known && !follows && !leaves {
             self.look_how_near(motion, places);
             if !asked {
                 self.look_where_it_ends(motion, end);
+            }
+            let stood = cut_end
+                .filter(|end| (end.point - places[0].point).norm() <= self.rapid_bound.point);
+            if let Some(stood) = stood.filter(|_| self.arm && !asked && !led) {
+                self.look_how_it_leaves(motion, stood, places);
             }
         }
         // Where a rapid comes from that leads to the course first of all, nothing has asked for.
@@ -277,6 +283,30 @@ impl<C: Course> Verifier<'_, C> {
             let message =
                 "a rapid ends where something is cut, and no rapid of the CL file does".to_owned();
             self.fault("rapid", message, Some(motion), None, None);
+        }
+    }
+
+    /// From where its last cut ended, at `from`, an arm leaves along the line of its tool, unless the course has it leave
+    /// otherwise: no axis of it would draw the tool back by itself, and no depth shows it.
+    fn look_how_it_leaves(&mut self, motion: &Motion, from: ToolPlace, places: &[ToolPlace]) {
+        let bound = self.rapid_bound;
+        let mut most = 0.0;
+        for place in places {
+            let way = place.point - from.point;
+            let along = way.dot(&from.axis).max(0.0);
+            let aside = (way - from.axis * along).norm();
+            // Along what is cut it does no harm.
+            if aside > bound.point + bound.axis * along
+                && self.cut_path.distance(place.point) > bound.point + self.cut_path.blur()
+            {
+                most = f64::max(most, aside);
+            }
+        }
+        if most > 0.0 {
+            let message = format!(
+                "a rapid leaves what is cut {most:.1} mm aside of the line of the tool, and no rapid of the CL file does"
+            );
+            self.fault("rapid", message, Some(motion), None, Some(most));
         }
     }
 

@@ -108,10 +108,11 @@ impl<C: Course> Verifier<'_, C> {
         if self.pecks_again(motion, places) {
             return true;
         }
-        if draws_back(places, &self.rapid_bound)
-            || self.comes_down(places)
-            || turns(places, self.rapid_bound.point)
-        {
+        let down = self.comes_down(places);
+        if down {
+            self.look_how_it_comes_back(motion, &places[places.len() - 1]);
+        }
+        if draws_back(places, &self.rapid_bound) || down || turns(places, self.rapid_bound.point) {
             self.set_kind("rapid");
             return true;
         }
@@ -507,6 +508,27 @@ impl<C: Course> Verifier<'_, C> {
     fn leave_cuts(&mut self) {
         self.reach.iter_mut().for_each(|span| *span = ShareSpan::EMPTY);
         self.apart = true;
+    }
+
+    /// The tool comes down to where a cut was left: the spindle does there what the course asks for.
+    fn look_how_it_comes_back(&mut self, motion: &Motion, place: &ToolPlace) {
+        let bound = self.bound;
+        let left = self.reach.iter().zip(self.track.kept()).find(|(span, element)| {
+            element.is_cut()
+                && !span.meet(&free(place, &element.from, &element.to, &bound)).is_empty()
+        });
+        let Some((_, element)) = left else {
+            return;
+        };
+        let (spindle, asked, line) = (motion.state.spindle, element.asked.spindle, element.line);
+        if !state::same_spindle(spindle, asked) {
+            let message = format!(
+                "the spindle {} where the tool comes back to a cut, and the CL file asks that it {}",
+                state::spindle_name(spindle),
+                state::spindle_name(asked)
+            );
+            self.fault("spindle", message, Some(motion), Some(line), None);
+        }
     }
 
     /// Along its own axis at feed to where a cut may begin, or towards a first point that is reached at feed.

@@ -3,7 +3,7 @@
 use post_host::OpenedDialect;
 use post_machine::description::Machine;
 use post_machine::diagnostic::Diagnostic;
-use post_plugin::{DialectSession as _, Meaning, VocabularyWord};
+use post_plugin::{Meaning, VocabularyWord};
 
 /// A mode of a machine file: its key, the lines that begin it, and what a word of them must mean.
 struct ModeBegin<'m> {

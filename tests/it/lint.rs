@@ -1,6 +1,7 @@
 //! `post lint`: each rule on a program that breaks it and on one that does not, the forms of what is found, programs of
 //! other posts, and how many of random mistakes are seen.
 
+mod examined;
 mod mistakes;
 mod strangers;
 

@@ -54,23 +54,37 @@ pub struct AxisLimitCheck {
     anywhere: Option<Box<PartWays>>,
 }
 
+/// By what words an axis was moved last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Led {
+    /// By none, or by such as leave open where it stands.
+    Nowhere,
+    /// By words of the part: those of the machine lead elsewhere on each mount.
+    Part,
+    /// By words of the machine: it stands where they say, wherever the part sits.
+    Machine,
+}
+
 /// Ways of the axes in words of the part, on a machine whose part may sit anywhere.
 #[derive(Clone, Debug)]
 struct PartWays {
-    /// The axis was moved last by words of the part: those of the machine lead elsewhere on each mount.
-    of_part: [bool; MAX_AXES],
+    led: [Led; MAX_AXES],
     ends: AxisEnds,
 }
 
 impl PartWays {
-    const NONE: Self = Self { of_part: [false; MAX_AXES], ends: AxisEnds::NONE };
+    const NONE: Self = Self { led: [Led::Nowhere; MAX_AXES], ends: AxisEnds::NONE };
 
     fn take(&mut self, motion: &Motion, [least, most]: [&Joints; 2]) {
         for joint in 0..MAX_AXES {
             if motion.from.joints[joint] != motion.to.joints[joint] {
-                self.of_part[joint] = !motion.machine;
+                self.led[joint] = match motion.machine {
+                    false => Led::Part,
+                    true if motion.way == Interpolation::Axes => Led::Machine,
+                    true => Led::Nowhere,
+                };
             }
-            if self.of_part[joint] {
+            if self.led[joint] == Led::Part {
                 self.ends.take(joint, [least[joint], most[joint]], |_| motion.line);
             }
         }
@@ -155,11 +169,14 @@ impl AxisLimitCheck {
     ) -> Option<AxisFault> {
         if let Some(ways) = &mut self.anywhere {
             ways.take(motion, [least, most]);
-            return None;
         }
         for (joint, axis) in machine.axes.iter().enumerate() {
             let slack = ROUNDED * axis.unit();
-            let ends = [least[joint], most[joint]];
+            let ends = match &self.anywhere {
+                None => [least[joint], most[joint]],
+                Some(ways) if ways.led[joint] == Led::Machine => [motion.to.joints[joint]; 2],
+                Some(_) => continue,
+            };
             // Of most motions both are the end.
             let count = if ends[0] == ends[1] { 1 } else { 2 };
             for value in ends.into_iter().take(count) {

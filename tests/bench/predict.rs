@@ -225,7 +225,7 @@ fn staged(path: &Path, tcp: &str) -> Result<Costs, Box<dyn Error>> {
         }
         match filled {
             FillOutcome::Full => {}
-            FillOutcome::Ended => break,
+            FillOutcome::Ended | FillOutcome::TooLong { .. } => break,
             FillOutcome::Wants => {
                 while planned.is_empty() && !ended {
                     if program.next(&mut done).map_err(text)? {

@@ -104,3 +104,26 @@ fn memory_of_a_prediction_does_not_grow_with_the_program() {
     );
     assert!(large < 64 * 1024, "{large} kB");
 }
+
+/// Twelve times the blocks: times of tasks that were told are let go, and are not gone through again.
+#[test]
+fn memory_of_looking_a_program_over_does_not_grow_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("wave.nc");
+    let machine = ["-m", "ac-trunnion"];
+    let [small, large] = [20_000, 240_000].map(|points| {
+        let path = wave(folder.path(), points);
+        peak_on(
+            &[&machine[..], &["--tcp", "post"]].concat(),
+            &["-o".as_ref(), program.as_ref(), path.as_ref(), "--tool-length=100".as_ref()],
+        );
+        let mut lint = common::command();
+        lint.arg("lint").arg(&program).args(machine).arg("--tool-length=100");
+        peak::of(&mut lint).unwrap()
+    });
+    assert!(small > 0, "no look at the running command succeeded");
+    assert!(
+        large < small + small / 10 + 1024,
+        "{small} kB for 20,000 points, {large} kB for 240,000"
+    );
+}

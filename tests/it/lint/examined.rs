@@ -1,10 +1,12 @@
 //! What an examiner of `post lint`, `read` and `predict` found, each on the program that he found it with.
 
 use std::fs;
+use std::path::Path;
 
 use post_testkit::assert_contains;
+use serde_json::Value;
 
-use crate::common::post_in;
+use crate::common::{post_in, read_json, root, sample};
 
 /// A folder with programs.
 fn folder(programs: &[(&str, &str)]) -> tempfile::TempDir {
@@ -13,6 +15,15 @@ fn folder(programs: &[(&str, &str)]) -> tempfile::TempDir {
         fs::write(folder.path().join(name), text).unwrap();
     }
     folder
+}
+
+/// Posts a sample on a machine as `part.nc`.
+fn posted(folder: &Path, name: &str, words: &[&str]) {
+    let input = root().join(sample(name));
+    let mut all = vec!["-q", "-o", "part.nc", input.to_str().unwrap()];
+    all.extend(words);
+    let run = post_in(folder, &all);
+    assert_eq!(run.code, 0, "{words:?}: {}", run.err);
 }
 
 /// Positions of the machine are where they are, wherever the part sits.
@@ -49,5 +60,103 @@ fn machine_positions_beyond_travel_are_told_where_nobody_says_where_the_part_sit
             assert_eq!(near.code, 0, "{what} {machine} {dialect}: {}{}", near.out, near.err);
             assert!(!near.err.contains("over-travel"), "{}", near.err);
         }
+    }
+}
+
+/// Programs of a few bytes whose time at the machine is days.
+const LONG: [(&str, &str); 4] = [
+    ("far.nc", "G0 X1.0 Y2.0\nG1 X1000000. F100.0\n"),
+    ("slow.nc", "G0 X1.0 Y2.0\nG1 X3.0 F0.001\n"),
+    ("wait.nc", "G0 X1.0 Y2.0\nG4 P999999999\nG1 X2. F100.\n"),
+    ("turn.nc", "G0 X1.0 Y2.0\nG1 C1000000000. F1000.\n"),
+];
+
+/// Of motion and rest at one speed the time is known without a set-point; what would need a hundred million is refused.
+#[test]
+fn a_block_of_days_is_timed_at_once_and_no_set_points_are_made_of_it() {
+    let folder = folder(&LONG);
+    let hours = [166.67, 33.33, 277.78, 16666.67];
+    for ((name, _), hours) in LONG.iter().zip(hours) {
+        let machine = ["-m", "ac-trunnion", "--tool-length", "100"];
+        let linted =
+            post_in(folder.path(), &[&["lint", name, "--json", "-"], &machine[..]].concat());
+        let found: Value = serde_json::from_str(&linted.out).unwrap();
+        let seconds = found["predicted_s"].as_f64().unwrap();
+        assert!((seconds / 3600.0 - hours).abs() < 0.01, "{name}: {seconds} s");
+        let predicted = post_in(folder.path(), &[&["predict", name], &machine[..]].concat());
+        assert_eq!(predicted.code, 1, "{}", predicted.out);
+        let told = ["error[too-long]: this block takes ", "2 h 46 min at most", "help: ", ".nc:2"];
+        assert_contains(&predicted.err, &told);
+    }
+    let travel =
+        post_in(folder.path(), &["lint", "far.nc", "-m", "ac-trunnion", "--tool-length", "100"]);
+    assert_contains(&travel.err, &["error[over-travel]: X would be at 1000000.000"]);
+    // The bound is one of set-points: with a longer period a longer block is predicted.
+    fs::write(folder.path().join("rest.nc"), "G0 X1.0\nG4 X10001.0\nG1 X2. F100.\n").unwrap();
+    let words = ["predict", "rest.nc", "-m", "ac-trunnion", "--tool-length", "100"];
+    for (period, code) in [("0.001", 1), ("0.01", 0)] {
+        let run = post_in(folder.path(), &[&words[..], &["--period", period]].concat());
+        assert_eq!(run.code, code, "{period}: {}", run.err);
+    }
+}
+
+#[test]
+fn posting_ends_at_once_where_a_block_takes_days() {
+    let cl = "PARTNO/A\nUNITS/MM\nLOADTL/1\nSPINDL/8000,RPM,CLW\nFEDRAT/0.1,MMPM\nRAPID\nGOTO/0,0,50,0,0,1\n\
+        GOTO/1,0,50,0,0,1\nGOTO/100,0,50,0,0,1\nFINI\n";
+    let folder = folder(&[("slow.cls", cl)]);
+    let words = ["slow.cls", "-m", "ac-trunnion", "--tool-length", "100", "-o", "slow.nc"];
+    let run = post_in(folder.path(), &[&words[..], &["--predict"]].concat());
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert_contains(&run.err, &["error[too-long]", "16 h 29 min", "nothing was written"]);
+    let run = post_in(folder.path(), &[&words[..], &["--plan"]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+}
+
+#[test]
+fn a_turn_of_millions_of_degrees_is_not_cut_into_chords() {
+    let text = "G21 G90\nG0 X1.0 Y2.0\nM3 S1000\nG43 H1 Z100.\nG1 C1000000000. F1000.\nM30\n";
+    let folder = folder(&[("turn.nc", text)]);
+    let run = post_in(
+        folder.path(),
+        &[
+            "convert",
+            "turn.nc",
+            "--from",
+            "ac-trunnion",
+            "--to",
+            "dmu50",
+            "--tool-length",
+            "100",
+            "-o",
+            "to.h",
+        ],
+    );
+    assert_eq!(run.code, 1, "{}", run.out);
+    assert_contains(&run.err, &["line 5 of the program turns", "100000 pieces", "decimal point"]);
+    assert!(!folder.path().join("to.h").exists());
+}
+
+/// What lint says without set-points is what `post predict` finds with them.
+#[test]
+fn the_time_that_is_told_is_that_of_the_prediction() {
+    for (machine, name) in [
+        ("ac-trunnion", "blade.cls"),
+        ("bc-fork", "wedge.ncl"),
+        ("dmu50", "facets.apt"),
+        ("vmc", "plate.ncl"),
+    ] {
+        let folder = folder(&[]);
+        posted(folder.path(), name, &["-m", machine, "--tool-length", "100"]);
+        let on = ["-m", machine, "--tool-length", "100"];
+        post_in(folder.path(), &[&["lint", "part.nc", "--json", "lint.json"], &on[..]].concat());
+        let run = post_in(
+            folder.path(),
+            &[&["predict", "part.nc", "--summary", "p.json"], &on[..]].concat(),
+        );
+        assert_eq!(run.code, 0, "{machine}: {}", run.err);
+        let told = read_json(&folder.path().join("lint.json"))["predicted_s"].as_f64().unwrap();
+        let found = read_json(&folder.path().join("p.json"))["time"]["cycle_s"].as_f64().unwrap();
+        assert!((told - found).abs() < 1e-9 * found, "{machine}: {told} s, {found} s");
     }
 }

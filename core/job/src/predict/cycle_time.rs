@@ -11,10 +11,10 @@ use crate::nc_program::{NcControl, ProgramText};
 const TOGETHER: usize = 64;
 
 /// How long the program `name` in `text` takes, s; none where the machine file does not say how fast its axes get up to
-/// speed, or the axes cannot follow.
+/// speed.
 ///
 /// # Errors
-/// The machine cannot be solved, or a block cannot be read.
+/// The machine cannot be solved, the axes cannot follow, or how a block is carried out is not known.
 pub fn cycle_time(
     control: &NcControl,
     name: &str,
@@ -25,7 +25,8 @@ pub fn cycle_time(
         return Ok(None);
     }
     let run = control.run(name, BufReader::new(text)).map_err(|fault| *fault)?;
-    let mut trajectory = Trajectory::new(name, run, machine, machine.motion.period, false);
+    let trajectory = Trajectory::new(name, run, machine, machine.motion.period, false);
+    let mut trajectory = trajectory.timed();
     let (mut seconds, mut batch) = (0.0_f64, Vec::new());
     while trajectory.make(&mut batch, TOGETHER) {
         for news in &batch {
@@ -34,7 +35,7 @@ pub fn cycle_time(
                     let ends = times.iter().map(|time| time.begins + time.seconds);
                     seconds = ends.fold(seconds, f64::max);
                 }
-                TrajectoryNews::Failed(_) => return Ok(None),
+                TrajectoryNews::Failed(why) => return Err(why.clone().into()),
                 _ => {}
             }
         }

@@ -6,7 +6,7 @@ use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::kinematics::{Joints, Unreachable};
 use post_motion::contour::ContourLeg;
-use post_motion::trajectory::{FillOutcome, Planner, TaskTime};
+use post_motion::trajectory::{FillOutcome, MOST_SECONDS, Planner, TaskTime};
 use post_motion::{SetPoints, Task};
 use post_readback::tasks::{ProgramTask, ProgramTasks};
 use post_readback::{BlockEffect, MachineState, ProgramEvent, ProgramRun};
@@ -15,7 +15,7 @@ use super::times::TaskKind;
 use crate::beside::Maker;
 use crate::nc_program::RunningProgram;
 use crate::session::Session;
-use crate::text::number;
+use crate::text::{clock, number};
 
 /// Set-points of a batch.
 const BATCH: usize = 256;
@@ -67,6 +67,8 @@ pub struct Trajectory<'a> {
     /// Somebody wants to know what blocks do.
     tells_blocks: bool,
     over: bool,
+    /// Set-points are made.
+    sampled: bool,
     /// The run that it is made for, which may end it; none: nobody does.
     session: Option<Session>,
 }
@@ -98,8 +100,14 @@ impl<'a> Trajectory<'a> {
             times: Vec::new(),
             tells_blocks,
             over: false,
+            sampled: true,
             session: None,
         }
+    }
+
+    /// The same without set-points: times of tasks alone.
+    pub fn timed(self) -> Self {
+        Self { sampled: false, ..self }
     }
 
     /// The same for a run that may end it: nothing more is made then.
@@ -126,6 +134,11 @@ impl<'a> Trajectory<'a> {
         match self.fill(news) {
             Ok(FillOutcome::Full) => {}
             Ok(FillOutcome::Ended) => self.over = true,
+            Ok(FillOutcome::TooLong { line, seconds, most }) => {
+                let fault = too_long(self.name, line, [seconds, most]);
+                news.push(TrajectoryNews::Failed(fault.boxed()));
+                self.over = true;
+            }
             Ok(FillOutcome::Wants) => {
                 if let Err(fault) = self.read_on(news) {
                     news.push(TrajectoryNews::Failed(fault));
@@ -144,14 +157,17 @@ impl<'a> Trajectory<'a> {
         let Some(points) = &mut self.points else {
             return Ok(FillOutcome::Wants);
         };
-        let filled = self.planner.fill(points, BATCH, &mut self.times);
+        let filled = match self.sampled {
+            true => self.planner.fill(points, BATCH, &mut self.times),
+            false => Ok(self.planner.skip(&mut self.times)),
+        };
         let line = points.at.last().map_or(0, |at| at.line);
         let filled = filled.map_err(|fault| unreachable(fault, self.name, line).boxed())?;
         if !self.times.is_empty() {
             let room = self.spare_times.pop().unwrap_or_default();
             news.push(TrajectoryNews::Times(std::mem::replace(&mut self.times, room)));
         }
-        if filled != FillOutcome::Wants {
+        if self.sampled && filled != FillOutcome::Wants {
             news.push(TrajectoryNews::Points(points.hand_over(self.spare.pop())));
         }
         Ok(filled)
@@ -194,7 +210,10 @@ impl Maker for Trajectory<'_> {
         for taken in batch.drain(..) {
             match taken {
                 TrajectoryNews::Points(points) => self.spare.push(points),
-                TrajectoryNews::Times(times) => self.spare_times.push(times),
+                TrajectoryNews::Times(mut times) => {
+                    times.clear();
+                    self.spare_times.push(times);
+                }
                 _ => {}
             }
         }
@@ -253,6 +272,17 @@ fn head(done: &[BlockEffect], name: &str) -> Option<Diagnostic> {
         }
         _ => None,
     })
+}
+
+/// What stands on `line` takes so many seconds, more than set-points are made of at most.
+fn too_long(name: &str, line: u64, [seconds, most]: [f64; 2]) -> Diagnostic {
+    let takes =
+        if most < MOST_SECONDS { "this block takes" } else { "up to here the program takes" };
+    let message =
+        format!("{takes} {}, and set-points are made of {} at most", clock(seconds), clock(most));
+    let help = "is a decimal point missing, or a feed or a dwell in another unit? a longer period makes fewer set-points; `post lint` tells the time without any";
+    let place = SourcePlace::new(name, line, "", 0..0);
+    Diagnostic::error("too-long", message).help(help).at(Some(place))
 }
 
 /// The axes cannot follow a move.

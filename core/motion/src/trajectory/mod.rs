@@ -95,8 +95,14 @@ pub enum TimeLimit {
     Wait,
 }
 
+/// So many set-points are made of one block at most: the work of some seconds.
+pub const MOST_OF_BLOCK: f64 = 1e7;
+
+/// Set-points are made of a program up to this time, s: 30 days.
+pub const MOST_SECONDS: f64 = 30.0 * 86_400.0;
+
 /// What has come of a call of [`Planner::fill`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FillOutcome {
     /// The batch is full, or its chain changes: call again.
     Full,
@@ -104,4 +110,13 @@ pub enum FillOutcome {
     Wants,
     /// All tasks are carried out.
     Ended,
+    /// The task on this line, or the program up to it, lasts too long for set-points of it to be made.
+    TooLong {
+        /// Its line.
+        line: u64,
+        /// How long, s.
+        seconds: f64,
+        /// How long at most, s.
+        most: f64,
+    },
 }

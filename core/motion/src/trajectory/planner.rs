@@ -22,7 +22,7 @@ use super::corner::Junction;
 use super::law::{LawPiece, LawSection, PieceSpan, TimeLaw};
 use super::look_ahead::LookAhead;
 use super::profile::Phase;
-use super::{FillOutcome, TaskTime, TimeLimit};
+use super::{FillOutcome, MOST_OF_BLOCK, MOST_SECONDS, TaskTime, TimeLimit};
 use crate::limits::{self, AxisLimits};
 use crate::{CornerMode, Move, MovePace, ProgramPlace, SetPoints, Task, VelocityJump};
 use entry::OpenMove;
@@ -224,7 +224,32 @@ impl Planner {
         filled
     }
 
-    /// Likewise, without poses but those that are led.
+    /// Goes on to where all is settled, and makes no set-points: the times of tasks that are done go to `times`, as
+    /// [`Planner::fill`] hands them over.
+    pub fn skip(&mut self, times: &mut Vec<TaskTime>) -> FillOutcome {
+        self.jumps.clear();
+        if self.ended {
+            self.accounts.done(f64::INFINITY, times);
+            return FillOutcome::Ended;
+        }
+        self.accounts.done(self.clock, times);
+        self.law.advance(self.clock);
+        FillOutcome::Wants
+    }
+
+    /// What lasts too long for set-points every `period` seconds, if that at `time` does.
+    fn too_long(&self, time: f64, period: f64) -> Option<FillOutcome> {
+        let section = self.law.sections.front()?;
+        let (seconds, most) = match section.phase.seconds > MOST_OF_BLOCK * period {
+            true => (section.phase.seconds, MOST_OF_BLOCK * period),
+            false if time > MOST_SECONDS => (time, MOST_SECONDS),
+            false => return None,
+        };
+        let line = self.law.piece(section.piece).at.line;
+        Some(FillOutcome::TooLong { line, seconds, most })
+    }
+
+    /// [`Planner::fill`] without poses but those that are led.
     fn fill_joints(
         &mut self,
         out: &mut SetPoints,
@@ -248,6 +273,9 @@ impl Planner {
             let Some(solver) = self.law.solver() else {
                 return Ok(FillOutcome::Wants);
             };
+            if let Some(long) = self.too_long(time, out.period) {
+                return Ok(long);
+            }
             if !Arc::ptr_eq(solver, &out.solver) {
                 if !out.is_empty() {
                     return Ok(FillOutcome::Full);

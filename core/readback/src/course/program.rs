@@ -49,6 +49,9 @@ const SAME: f64 = 1e-9;
 /// Ways shorter than this take no time at a feed, mm.
 const NO_WAY: f64 = 1e-9;
 
+/// A motion becomes so many pieces at most: some thousand turns of an axis.
+const MOST_PIECES: u64 = 100_000;
+
 /// A program's path, block by block.
 #[derive(Debug)]
 pub struct ProgramCourse<P> {
@@ -73,6 +76,8 @@ pub struct ProgramCourse<P> {
     retracted: Option<Joints>,
     /// The tool has come down aside of its own line, to where it goes in along it.
     on_line: bool,
+    /// Why the motion that was taken last becomes no pieces.
+    refused: Option<Box<Diagnostic>>,
     ended: bool,
 }
 
@@ -92,6 +97,7 @@ impl<P: BlockRunner> ProgramCourse<P> {
             astray: u32::MAX,
             retracted: None,
             on_line: false,
+            refused: None,
             ended: false,
         }
     }
@@ -248,6 +254,15 @@ impl<P: BlockRunner> ProgramCourse<P> {
             Curve::Arc { centre, normal, sweep } => arc(*centre, *normal, sweep / count as f64),
             curve => curve.clone(),
         };
+        if count > MOST_PIECES {
+            let message = format!(
+                "line {} of the program turns the tool so far against the part that it would become more than {MOST_PIECES} pieces",
+                motion.line
+            );
+            let help = "is a decimal point missing in it? else divide the turn into blocks";
+            self.refused = Some(Diagnostic::error("course", message).help(help).boxed());
+            return;
+        }
         let mut from = motion.from.pose;
         for to in piece_ends(count, motion.to.pose, |t| motion.at(t)) {
             let mut piece = CoursePiece {
@@ -354,6 +369,9 @@ impl<P: BlockRunner> Course for ProgramCourse<P> {
             let more = self.program.next(&mut done);
             done.drain(..).for_each(|done| self.take(done));
             self.done = done;
+            if let Some(refused) = self.refused.take() {
+                return Err(refused);
+            }
             self.ended = !more?;
             if self.ended {
                 self.waiting.extend(self.hole.take().unwrap_or_default());

@@ -160,3 +160,30 @@ fn the_time_that_is_told_is_that_of_the_prediction() {
         assert!((told - found).abs() < 1e-9 * found, "{machine}: {told} s, {found} s");
     }
 }
+
+/// A tool that leans comes in across its axis, as high up as it was changed, with the length in the next block.
+#[test]
+fn programs_of_heads_that_lean_call_their_lengths_in_time() {
+    for machine in ["bc-fork", "disc-cutter", "head-table-sr", "ultrasonic-knife", "vertical-lathe"]
+    {
+        let folder = folder(&[]);
+        posted(folder.path(), "wedge.ncl", &["-m", machine, "--tool-length", "100"]);
+        let run =
+            post_in(folder.path(), &["lint", "part.nc", "-m", machine, "--tool-length", "100"]);
+        assert_eq!(run.code, 0, "{machine}: {}", run.err);
+        // Without the table of lengths the block that calls one is refused: it called it all the same.
+        let run = post_in(folder.path(), &["lint", "part.nc", "-m", machine]);
+        assert!(!run.err.contains("error[length]"), "{machine}: {}", run.err);
+        // And where none is called it is told still.
+        let text = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        let bare = text.replace("G43 H2 ", "");
+        assert_ne!(bare, text);
+        fs::write(folder.path().join("part.nc"), bare).unwrap();
+        let run =
+            post_in(folder.path(), &["lint", "part.nc", "-m", machine, "--tool-length", "100"]);
+        assert_contains(
+            &run.err,
+            &["[length]: tool 2 comes down, and no length of it is in force"],
+        );
+    }
+}

@@ -116,6 +116,8 @@ pub(super) struct LintWatch<'m> {
     leeway: Leeway,
     /// The length of the tool in the spindle was in force since it was changed.
     had_length: bool,
+    /// Place in the chain of the axis that the length counts along; none where nobody knows.
+    depth: Option<usize>,
     /// Some tool has a length in force somewhere.
     has_lengths: bool,
     /// The spindle turns somewhere.
@@ -141,6 +143,10 @@ impl<'m> LintWatch<'m> {
             new_tool: true,
             leeway: Leeway::default(),
             had_length: false,
+            depth: match control.machine.length_axis {
+                LengthAxis::Said(place) => Some(place),
+                _ => control.machine.lies_along().map(|(place, _)| place),
+            },
             has_lengths: false,
             turns: false,
             cooled: false,
@@ -164,6 +170,7 @@ impl<'m> LintWatch<'m> {
     /// A block was not understood: of what it would have changed nothing is told.
     pub fn miss(&mut self) {
         self.missed = true;
+        (self.new_tool, self.had_length) = (false, false);
         self.depths.iter_mut().for_each(CutDepths::miss);
     }
 
@@ -269,8 +276,11 @@ impl<'m> LintWatch<'m> {
         }
         let cuts = motion.kind != MotionKind::Rapid && !motion.fast;
         let way = motion.to.pose.tip - motion.from.pose.tip;
+        let [from, to] = [&motion.from, &motion.to].map(|end| &end.joints);
+        // A tool that leans goes down along itself where the axes across the depth move alone, as high up as ever.
+        let lowers = self.depth.is_none_or(|place| from[place] != to[place]);
         // Where the tool turns its tip goes along, whatever its length is taken to be.
-        if !cuts && (motion.turns() || way.dot(&motion.to.pose.axis) > -SHORT) {
+        if !cuts && (motion.turns() || !lowers || way.dot(&motion.to.pose.axis) > -SHORT) {
             return;
         }
         if std::mem::take(&mut self.new_tool) && !stated {

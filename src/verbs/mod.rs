@@ -222,7 +222,7 @@ impl CommandLine {
             Some(Verb::Clearance(Late(verb))) => clearance::run(session, verb.applied(session)),
             Some(Verb::Convert(Late(verb))) => convert::run(session, verb.applied(session)),
             Some(Verb::Diff(Late(verb))) => diff::run(session, verb.applied(session)),
-            Some(Verb::Lint(Late(verb))) => lint::run(session, verb.applied(session)),
+            Some(Verb::Lint(Late(verb))) => return lint::run(session, verb.applied(session)),
             Some(Verb::New(Late(arguments))) => new::run(session, &arguments),
             Some(Verb::Place(Late(verb))) => place::run(session, verb.applied(session)),
             Some(Verb::Predict(Late(verb))) => predict::run(session, verb.applied(session)),

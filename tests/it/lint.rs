@@ -122,7 +122,7 @@ fn what_is_ignored_is_counted_and_what_no_message_has_is_refused() {
         let mut all = vec!["lint", "part.nc", "-m", "mine.toml"];
         all.extend(words);
         let run = post_in(folder.path(), &all);
-        assert_eq!(run.code, 1, "{}", run.out);
+        assert_eq!(run.code, 2, "{}", run.out);
         assert_contains(&run.err, &["no message has the code colant", "coolant"]);
     }
 }

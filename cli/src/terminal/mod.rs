@@ -105,6 +105,8 @@ pub fn explain(session: &Session, fault: CommandFault) {
             }
         }
         CommandFault::Job(Failure::Different) => {}
-        CommandFault::Job(failure) => session.findings(&failure.findings()),
+        CommandFault::Job(failure) | CommandFault::NotLooked(failure) => {
+            session.findings(&failure.findings());
+        }
     }
 }

@@ -130,7 +130,9 @@ pub fn run(words: &[String]) -> Ran {
         Err(CommandFault::Usage(fault)) => {
             let _ = standard::errors().write_all(fault.to_string().as_bytes());
         }
-        Err(CommandFault::Job(fault)) => session.findings(&fault.findings()),
+        Err(CommandFault::Job(fault) | CommandFault::NotLooked(fault)) => {
+            session.findings(&fault.findings());
+        }
         Ok(()) => {}
     }
     let findings = std::mem::take(&mut *found.lock().unwrap_or_else(PoisonError::into_inner));

@@ -5,13 +5,13 @@ mod lint_text;
 use clap::Args;
 use post_cli::arguments::ProgramArguments;
 use post_cli::arguments::flag_values::file;
+use post_cli::failure::CommandFault;
 use post_cli::terminal;
 use post_job::failure::Failure;
 use post_job::files::{self, AtomicFile, PathArg, Role};
 use post_job::lint::{self, CodeText, LintSummary};
 use post_job::nc_program::{NcControl, ProgramFile};
 use post_job::plugin_finder;
-use post_job::predict::cycle_time;
 use post_job::session::Session;
 use post_machine::diagnostic::{Diagnostic, Severity, nearest};
 
@@ -32,7 +32,8 @@ use crate::codes::codes;
   post explain rapid
 
 Exit codes: 0 nothing is wrong, but for warnings; 1 something is, with --strict warnings too;
-2 the command line is wrong.")]
+2 the command line is wrong, or a program, the machine file or a result cannot be read or
+written: programs that can be read are looked over all the same.")]
 pub struct LintArguments {
     #[command(flatten)]
     program: ProgramArguments,
@@ -66,7 +67,32 @@ const GROUP: &str = "Looking a program over";
 const SARIF: Role = Role { what: "SARIF", remedy: "name another file with --sarif" };
 
 /// Does as the arguments say.
-pub fn run(session: &Session, arguments: &LintArguments) -> Result<(), Failure> {
+///
+/// # Errors
+/// What is wrong with the programs; or what kept some of them from being looked over.
+pub fn run(session: &Session, arguments: &LintArguments) -> Result<(), CommandFault> {
+    let looked = look(session, arguments).map_err(CommandFault::NotLooked)?;
+    let LookedOver { findings, unread } = looked;
+    let wrong = |finding: &Diagnostic| arguments.strict || finding.severity == Severity::Error;
+    if !unread.is_empty() {
+        let all: Vec<Diagnostic> = findings.into_iter().chain(unread).collect();
+        return Err(CommandFault::NotLooked(all.into()));
+    }
+    let (errors, warnings): (Vec<_>, Vec<_>) = findings.into_iter().partition(wrong);
+    session.findings(&warnings);
+    if errors.is_empty() { Ok(()) } else { Err(CommandFault::Job(errors.into())) }
+}
+
+/// What was found of all programs.
+#[derive(Default)]
+struct LookedOver {
+    /// Of those that were looked over.
+    findings: Vec<Diagnostic>,
+    /// Why others were not.
+    unread: Vec<Diagnostic>,
+}
+
+fn look(session: &Session, arguments: &LintArguments) -> Result<LookedOver, Failure> {
     let settings = arguments.program.settings();
     let control = NcControl::new(session, &settings)?;
     let finder = plugin_finder::finder(session, &settings.plugins)?;
@@ -76,56 +102,63 @@ pub fn run(session: &Session, arguments: &LintArguments) -> Result<(), Failure> 
     for code in &control.machine.lint_ignored {
         known(code, "[lint] ignore of the machine file")?;
     }
-    let programs: Vec<ProgramFile> = arguments
-        .inputs
-        .iter()
-        .map(|input| ProgramFile::open(session, input))
-        .collect::<Result<_, _>>()?;
+    let inputs = arguments.inputs.iter();
+    let programs: Vec<_> = inputs.map(|input| (input, ProgramFile::open(session, input))).collect();
     let mut targets: Vec<(Role, &PathArg)> = Vec::new();
     targets.extend(arguments.json.iter().map(|target| (Role::JSON, target)));
     targets.extend(arguments.sarif.iter().map(|target| (SARIF, target)));
     let mut written = AtomicFile::create(session, &targets)?;
-    let (mut text, mut summaries, mut findings) = (String::new(), Vec::new(), Vec::new());
-    let mut wrong = false;
-    for program in &programs {
-        let name = &program.name;
-        let source = Box::new(program.text()?);
-        let mut linted = lint::look_over(&control, &finder, name, source, &arguments.ignore)?;
-        if linted.whole {
-            linted.predicted = cycle_time(&control, name, Box::new(program.text()?))?;
-        }
-        wrong |= linted.is_wrong(arguments.strict);
+    if written.is_empty() {
+        // What was found is all that it is for.
+        session.texts().note_printed();
+    }
+    let (mut text, mut summaries, mut found) = (String::new(), Vec::new(), LookedOver::default());
+    let machine = &control.machine;
+    for (input, program) in programs {
+        let ignored = &arguments.ignore;
+        let linted = program.map_err(Failure::from).and_then(|program| {
+            let (name, source) = (&program.name, Box::new(program.text()?));
+            let mut linted = lint::look_over(&control, &finder, name, source, ignored)?;
+            linted.predict(&control, name, Box::new(program.text()?), ignored)?;
+            Ok((program.name, linted))
+        });
+        let (name, linted) = match linted {
+            Ok(linted) => linted,
+            // Another program may be read, but for a run that shall end.
+            Err(failure) if session.go_on().is_err() => return Err(failure),
+            Err(failure) => {
+                let why = failure.findings();
+                let name = input.path().map_or("-".into(), |path| path.to_string_lossy());
+                summaries.push(LintSummary::unread(&name, &machine.name, &why));
+                found.unread.extend(why);
+                continue;
+            }
+        };
         if !text.is_empty() {
             text.push('\n');
         }
-        text.push_str(&lint_text::text(&control.machine, name, &linted));
-        summaries.push(LintSummary::new(name, &control.machine.name, &linted));
-        findings.extend(linted.findings);
+        text.push_str(&lint_text::text(machine, &name, &linted));
+        summaries.push(LintSummary::new(&name, &machine.name, &linted));
+        found.findings.extend(linted.findings);
     }
     let mut texts = Vec::new();
     texts.extend(arguments.json.as_ref().map(|_| match summaries.as_slice() {
         [one] => files::json(one),
         all => files::json(&all),
     }));
-    texts.extend(
-        arguments
-            .sarif
-            .as_ref()
-            .map(|_| lint::sarif(&findings, env!("CARGO_PKG_VERSION"), &described)),
-    );
+    texts.extend(arguments.sarif.as_ref().map(|_| {
+        let LookedOver { findings, unread } = &found;
+        lint::sarif(findings, unread, env!("CARGO_PKG_VERSION"), &described)
+    }));
     for (file, text) in written.iter_mut().zip(&texts) {
         file.write_bytes(text.as_bytes())?;
     }
     let printed = written.iter().any(AtomicFile::is_standard);
     AtomicFile::finish(session, written)?;
-    terminal::print_beside(session, &text, printed);
-    if wrong && arguments.strict {
-        return Err(findings.into());
+    if !text.is_empty() {
+        terminal::print_beside(session, &text, printed);
     }
-    let (errors, warnings): (Vec<_>, Vec<_>) =
-        findings.into_iter().partition(|finding| finding.severity == Severity::Error);
-    session.findings(&warnings);
-    if errors.is_empty() { Ok(()) } else { Err(errors.into()) }
+    Ok(found)
 }
 
 /// What a code means here, and what helps.

@@ -187,3 +187,100 @@ fn programs_of_heads_that_lean_call_their_lengths_in_time() {
         );
     }
 }
+
+#[test]
+fn a_time_that_cannot_be_predicted_is_one_warning() {
+    let folder = folder(&[]);
+    let machine = ["-m", "lathe-xzc-polar", "--tool-length", "100"];
+    let words = [&machine[..], &["--tool", "1", "--spindle", "3000", "--feed", "500"]].concat();
+    posted(folder.path(), "lever.apt", &words);
+    let lint = ["lint", "part.nc", "--json", "found.json"];
+    let run = post_in(folder.path(), &[&lint[..], &machine[..]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert_contains(&run.err, &["warning[mode]: how long it takes is not predicted", "part.nc:"]);
+    assert_contains(&run.out, &["time at the stated feeds"]);
+    let found = read_json(&folder.path().join("found.json"));
+    assert_eq!(found["findings"].as_array().unwrap().len(), 1, "{found:#}");
+    let run = post_in(
+        folder.path(),
+        &[&lint[..], &machine[..], &["--ignore", "mode", "--strict"]].concat(),
+    );
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{}", run.out);
+    assert_contains(&run.out, &["1 mode"]);
+}
+
+/// A program that cannot be read is told apart from one in which something is wrong, and keeps nothing of the others back.
+#[test]
+fn the_others_are_looked_over_where_a_program_cannot_be_read() {
+    let good = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z-5.\nM30\n%\n";
+    let bad = good.replace("Z-5.", "Z500.");
+    let folder = folder(&[("good.nc", good), ("bad.nc", &bad)]);
+    fs::create_dir(folder.path().join("folder")).unwrap();
+    let run = post_in(
+        folder.path(),
+        &[
+            "lint",
+            "bad.nc",
+            "nosuch.nc",
+            "folder",
+            "good.nc",
+            "-m",
+            "vmc",
+            "--json",
+            "j.json",
+            "--sarif",
+            "s.json",
+        ],
+    );
+    assert_eq!(run.code, 2, "{}", run.err);
+    assert_contains(
+        &run.err,
+        &["error[over-travel]", "nosuch.nc: ", "folder is a folder", "3 errors"],
+    );
+    assert!(
+        !run.err.contains("nothing was written") && !run.err.contains("CL file"),
+        "{}",
+        run.err
+    );
+    assert_contains(&run.out, &["bad.nc, ", "good.nc, "]);
+    let found = read_json(&folder.path().join("j.json"));
+    let codes: Vec<_> =
+        found.as_array().unwrap().iter().map(|one| &one["findings"][0]["code"]).collect();
+    assert_eq!(
+        codes,
+        ["over-travel", "input", "input", ""]
+            .map(|code| match code {
+                "" => Value::Null,
+                code => code.into(),
+            })
+            .iter()
+            .collect::<Vec<_>>()
+    );
+    let log = read_json(&folder.path().join("s.json"));
+    let ended = &log["runs"][0]["invocations"][0];
+    assert_eq!(ended["executionSuccessful"], false);
+    assert_eq!(ended["toolExecutionNotifications"].as_array().unwrap().len(), 2);
+    assert_eq!(log["runs"][0]["results"].as_array().unwrap().len(), 1);
+    for (names, code) in [(&["good.nc"][..], 0), (&["bad.nc"], 1), (&["nosuch.nc"], 2)] {
+        let run = post_in(folder.path(), &[&["lint", "-m", "vmc"], names].concat());
+        assert_eq!(run.code, code, "{names:?}: {}", run.err);
+        assert!(!run.err.contains("nothing was written"), "{}", run.err);
+    }
+}
+
+/// A stock takes the place of the guess only where a cutter is drawn that can be held against it.
+#[test]
+fn of_a_stock_without_a_cutter_it_is_said_that_nothing_is_proven() {
+    let deep = super::GOOD.replace("Z2.\nG1 Z-5. F300.\nX40.", "Z2.\nG0 Z-5.\nG1 X40. F300.");
+    let stock = "[stock]\nblock = [[3, 3, -20], [57, 37, 0]]\n";
+    let (_folder, _, found) = super::linted(&deep, stock, &[]);
+    let told = super::told(&found);
+    assert!(told.contains(&("rapid".to_owned(), 25)), "{found:#}");
+    assert!(told.contains(&("clearance-body".to_owned(), 0)), "{found:#}");
+    assert!(found.to_string().contains("no cutter is drawn"), "{found:#}");
+    let cutter = format!("cutter = [[0, 3], [60, 3]]\n{stock}");
+    let deep = deep.replace("T2 M6", "T3 M6").replace("G43 H2", "G43 H3");
+    let (_folder, _, found) = super::linted(&deep, &cutter, &[]);
+    let told = found.to_string();
+    assert!(told.contains("of cutters that are not drawn: cutter T1\""), "{found:#}");
+}

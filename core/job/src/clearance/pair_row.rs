@@ -27,7 +27,7 @@ impl PairRow {
     }
 
     /// They are a stock and what cuts it.
-    pub(super) fn is_cut(&self) -> bool {
+    pub(crate) fn is_cut(&self) -> bool {
         let begin = |names: [&str; 2]| {
             self.names.iter().zip(names).all(|(name, begins)| name.starts_with(begins))
         };

@@ -21,7 +21,7 @@ pub enum FileFault {
         /// What the system says.
         error: io::Error,
     },
-    /// A folder stands where a CL file is wanted.
+    /// A folder stands where a file is to be read.
     ReadFolder(PathBuf),
     /// It is not what it was when the run first opened it.
     Changed(PathBuf),
@@ -162,7 +162,7 @@ impl fmt::Display for FileFault {
             | Self::Write { name, error }
             | Self::NotKept { name, error, .. } => write!(formatter, "{name}: {error}"),
             Self::ReadFolder(path) => {
-                write!(formatter, "{} is a folder, not a CL file", path.display())
+                write!(formatter, "{} is a folder, not a file to read", path.display())
             }
             Self::Changed(path) => {
                 write!(formatter, "{} was changed while it was read", path.display())

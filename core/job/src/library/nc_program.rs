@@ -12,7 +12,7 @@ use crate::files::{self, PathArg};
 use crate::lint::{self, LintSummary};
 use crate::nc_program::{NcControl, ProgramFile};
 use crate::plugin_finder;
-use crate::predict::{self, PredictRequest, cycle_time};
+use crate::predict::{self, PredictRequest};
 use crate::read::{self, ReadRequest, ReadSummary};
 use crate::settings::{
     JobSettings, ProgramSettings, ReadingSettings, ReportSettings, ThreadSettings, tell,
@@ -163,9 +163,7 @@ impl LoadedMachine {
             let name = &program.name;
             let text = Box::new(program.text()?);
             let mut linted = lint::look_over(&control, &finder, name, text, ignored)?;
-            if linted.whole {
-                linted.predicted = cycle_time(&control, name, Box::new(program.text()?))?;
-            }
+            linted.predict(&control, name, Box::new(program.text()?), ignored)?;
             if linted.is_wrong(strict) {
                 return Err(linted.findings.into());
             }

@@ -14,15 +14,17 @@ mod watch;
 use std::io::Seek as _;
 
 use post_host::Finder;
+use post_machine::description::Machine;
 use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 use post_readback::interpret::ReadReport;
 use post_readback::{BlockEffect, MOST_FAULTS, ProgramRun};
 
 use crate::cl_facts::ClFacts;
-use crate::clearance::{self, PairRow};
+use crate::clearance::{self, ClearanceFound, PairRow};
 use crate::failure::Failure;
 use crate::files::FileFault;
 use crate::nc_program::{self, NcControl, ProgramText};
+use crate::predict::cycle_time;
 use crate::read::ProgramSurvey;
 use crate::read::beyond_travel::BeyondTravel;
 use crate::read_back::lines_of;
@@ -62,6 +64,57 @@ impl LintedProgram<'_> {
     pub fn is_wrong(&self, strict: bool) -> bool {
         self.findings.iter().any(|finding| strict || finding.severity == Severity::Error)
     }
+
+    /// Predicts how long the program `name` in `text` takes, if each of its blocks was understood; why that is not known
+    /// is a warning, unless its code is `ignored`.
+    ///
+    /// # Errors
+    /// The program cannot be read again.
+    pub fn predict(
+        &mut self,
+        control: &NcControl,
+        name: &str,
+        mut text: ProgramText<'_>,
+        ignored: &[String],
+    ) -> Result<(), Failure> {
+        if !self.whole {
+            return Ok(());
+        }
+        let why = match cycle_time(control, name, Box::new(&mut text)) {
+            Ok(seconds) => {
+                self.predicted = seconds;
+                return Ok(());
+            }
+            // It was read to its end before: what fails now is the disk, or the run shall end.
+            Err(Failure::Refused(why)) if why.iter().all(|why| why.code != "nc-file") => why,
+            Err(failure) => return Err(failure),
+        };
+        let unreadable = |error| FileFault::Read { name: name.to_owned(), error };
+        text.rewind().map_err(unreadable)?;
+        let Some(why) = why.into_iter().next() else { return Ok(()) };
+        if is_ignored(&control.machine, ignored, why.code) {
+            match self.ignored.iter_mut().find(|(code, _)| *code == why.code) {
+                Some((_, count)) => *count += 1,
+                None => self.ignored.push((why.code, 1)),
+            }
+            return Ok(());
+        }
+        let message = format!("how long it takes is not predicted: {}", why.message);
+        self.findings.push(Diagnostic { severity: Severity::Warning, message, ..why });
+        in_order(&mut self.findings);
+        show_lines(&mut self.findings, name, &mut text).map_err(unreadable)?;
+        Ok(())
+    }
+}
+
+/// Findings of a code are not told of programs of a machine.
+fn is_ignored(machine: &Machine, ignored: &[String], code: &str) -> bool {
+    ignored.iter().chain(&machine.lint_ignored).any(|ignored| ignored == code)
+}
+
+/// The findings by their lines.
+fn in_order(findings: &mut [Diagnostic]) {
+    findings.sort_by_key(|finding| finding.place.as_ref().map_or(0, |place| place.line));
 }
 
 /// Looks over the program `name` in `text`; findings of the codes in `ignored`, and of those that the machine file names,
@@ -85,13 +138,11 @@ pub fn look_over<'m>(
         }
         false => None,
     };
+    let undrawn = clear.as_ref().and_then(|clear| undrawn(machine, clear));
     // What no two bodies tell is not known, and no fault of the program.
     let clear = clear.filter(|clear| !clear.pairs.is_empty());
-    let stocks = &machine.stocks;
-    let stock =
-        |row: &PairRow| row.names.iter().any(|name| stocks.iter().any(|stock| stock.name == *name));
     let mut before: Vec<Diagnostic> = Vec::new();
-    let depths = match clear.as_ref().is_some_and(|clear| clear.pairs.iter().any(stock)) {
+    let depths = match clear.as_ref().is_some_and(|clear| clear.pairs.iter().any(PairRow::is_cut)) {
         // Bodies tell it better.
         true => None,
         false => {
@@ -127,17 +178,15 @@ pub fn look_over<'m>(
     found.extend(beyond.part_place(machine, name));
     found.extend(watch.finish(name));
     found.extend(fed_rapid(name, &report, &survey));
+    found.extend(undrawn);
     before.extend(clear.map(|clear| clear.findings).unwrap_or_default());
     // What cannot be read of it was told, but for a disk that fails in one of the passes.
     let told = found.len();
     before.retain(|finding| !found[..told].contains(finding));
     found.append(&mut before);
-    let (findings, ignored) = left_out(found, |code| {
-        let mut codes = ignored.iter().chain(&machine.lint_ignored);
-        codes.any(|ignored| ignored == code)
-    });
+    let (findings, ignored) = left_out(found, |code| is_ignored(machine, ignored, code));
     let mut findings = told_once(findings);
-    findings.sort_by_key(|finding| finding.place.as_ref().map_or(0, |place| place.line));
+    in_order(&mut findings);
     text.rewind().map_err(unreadable)?;
     show_lines(&mut findings, name, &mut text).map_err(unreadable)?;
     Ok(LintedProgram { findings, ignored, survey, report, whole, predicted: None })
@@ -158,6 +207,30 @@ fn left_out(
         }
     }
     (findings, counts)
+}
+
+/// Of cutters that are not drawn nothing is proven against the stock.
+fn undrawn(machine: &Machine, clear: &ClearanceFound) -> Option<Diagnostic> {
+    let lacks = clear.lacks.iter().filter(|lacks| lacks.starts_with("cutter "));
+    let cutters: Vec<&str> = lacks.map(String::as_str).collect();
+    let held = clear.pairs.iter().any(PairRow::is_cut);
+    if machine.stocks.is_empty() || cutters.is_empty() && held {
+        return None;
+    }
+    let which = match cutters.is_empty() {
+        true => String::new(),
+        false => format!(": {}", cutters.join(", ")),
+    };
+    let message = match held {
+        true => {
+            format!("no rapid is proven against the stock of cutters that are not drawn{which}")
+        }
+        false => format!(
+            "no rapid is proven against the stock, as no cutter is drawn, and where none may go is guessed{which}"
+        ),
+    };
+    let help = "cutter = [[z, r], …] under [tools.N] of the machine file";
+    Some(Diagnostic::warning("clearance-body", message).help(help))
 }
 
 /// A rapid in whose block a feed stands, where few have one.

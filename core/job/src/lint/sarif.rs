@@ -14,9 +14,11 @@ pub struct CodeText {
     pub remedy: &'static str,
 }
 
-/// The log of a run of this `version` with these findings, as JSON; `describe` knows the codes.
+/// The log of a run of this `version` with these findings, as JSON; `unread` says why programs were not looked over,
+/// `describe` knows the codes.
 pub fn sarif(
     findings: &[Diagnostic],
+    unread: &[Diagnostic],
     version: &str,
     describe: &dyn Fn(&str) -> Option<CodeText>,
 ) -> String {
@@ -33,6 +35,8 @@ pub fn sarif(
         None => json!({ "id": rule }),
     });
     let descriptors: Vec<Value> = descriptors.collect();
+    let notes =
+        unread.iter().map(|why| json!({ "level": "error", "message": { "text": text(why) } }));
     files::json(&json!({
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",
@@ -43,9 +47,21 @@ pub fn sarif(
                 "rules": descriptors,
             } },
             "columnKind": "utf16CodeUnits",
+            "invocations": [{
+                "executionSuccessful": unread.is_empty(),
+                "toolExecutionNotifications": notes.collect::<Vec<Value>>(),
+            }],
             "results": results,
         }],
     }))
+}
+
+/// What is found, and what helps.
+fn text(finding: &Diagnostic) -> String {
+    match &finding.help {
+        Some(help) => format!("{}\nhelp: {help}", finding.message),
+        None => finding.message.clone(),
+    }
 }
 
 fn result(finding: &Diagnostic, rules: &[&str]) -> Value {
@@ -53,15 +69,11 @@ fn result(finding: &Diagnostic, rules: &[&str]) -> Value {
         Severity::Error => "error",
         Severity::Warning => "warning",
     };
-    let text = match &finding.help {
-        Some(help) => format!("{}\nhelp: {help}", finding.message),
-        None => finding.message.clone(),
-    };
     let mut result = json!({
         "ruleId": finding.code,
         "ruleIndex": rules.binary_search(&finding.code).unwrap_or_default(),
         "level": level,
-        "message": { "text": text },
+        "message": { "text": text(finding) },
     });
     if let Some(place) = &finding.place {
         result["locations"] = json!([{ "physicalLocation": {

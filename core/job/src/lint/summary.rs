@@ -16,8 +16,8 @@ pub struct LintSummary {
     pub blocks: u64,
     /// Time of the motions at the feeds that the program states, rapids at the largest feeds of the axes, and waits, s.
     pub time_s: f64,
-    /// How long it takes, s; none where the machine file does not say how fast the axes get up to speed, or a block is not
-    /// understood.
+    /// How long it takes, s; none where the machine file does not say how fast the axes get up to speed, a block is not
+    /// understood, or a finding says why.
     pub predicted_s: Option<f64>,
     /// What is wrong, and what may be.
     pub findings: Vec<FindingSummary>,
@@ -55,6 +55,19 @@ impl LintSummary {
                 .map(|finding| FindingSummary::new(name, finding))
                 .collect(),
             ignored: linted.ignored.clone(),
+        }
+    }
+
+    /// Of the program `name` for `machine`, which cannot be looked over: why.
+    pub fn unread(name: &str, machine: &str, findings: &[Diagnostic]) -> Self {
+        Self {
+            program: name.to_owned(),
+            machine: machine.to_owned(),
+            blocks: 0,
+            time_s: 0.0,
+            predicted_s: None,
+            findings: findings.iter().map(|finding| FindingSummary::new(name, finding)).collect(),
+            ignored: Vec::new(),
         }
     }
 }

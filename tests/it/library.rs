@@ -296,6 +296,18 @@ fn every_file_is_in_the_list() {
 }
 
 #[test]
+fn the_pages_say_how_many_machines_there_are() {
+    for (page, says) in [
+        ("README.md", "[{} machines](machines/README"),
+        ("docs/src/study.md", "Of the {} machines of the library"),
+    ] {
+        let text = fs::read_to_string(root().join(page)).unwrap();
+        let says = says.replace("{}", &LIBRARY.len().to_string());
+        assert!(text.contains(&says), "{page} does not say {says:?}");
+    }
+}
+
+#[test]
 fn every_machine_says_where_its_numbers_come_from() {
     let guide = fs::read_to_string(root().join("machines/README.md")).unwrap();
     for row in LIBRARY {

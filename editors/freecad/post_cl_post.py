@@ -32,6 +32,16 @@ CYCLES = {"G81": "DRILL", "G82": "DRILL", "G83": "DEEP", "G73": "BRKCHP", "G84":
 COOLANT = {"M7": "MIST", "M8": "FLOOD", "M9": "OFF"}
 # They say what is so in every path, or what `post` says by itself.
 SILENT = {"G21", "G40", "G49", "G80", "G90", "G94", "M2", "M30"}
+MOVE = "XYZABCUVWF"
+# The words of each command that are looked at; with any other it is refused.
+WORDS = {
+    **dict.fromkeys([*SILENT, *PLANES, *SYSTEMS, *COOLANT, "G98", "G99", "M0", "M1", "M5"], ""),
+    **dict.fromkeys(["G0", "G1"], MOVE),
+    **dict.fromkeys(["G2", "G3"], MOVE + "IJKRP"),
+    **dict.fromkeys(CYCLES, MOVE + "RLP"),
+    **dict.fromkeys(["G83", "G73"], MOVE + "RLPQ"),
+    **{"G84": MOVE + "RLPS", "G4": "P", "M3": "S", "M4": "S", "M6": "T", "G43": "H"},
+}
 
 
 class Refused(Exception):
@@ -169,6 +179,7 @@ class Course:
         self.feed = None  # as written, mm/min
         self.path_feed = 0.0  # as the path last said, mm/s
         self.speed = None  # of the spindle, rev/min
+        self.tool = None  # the number of the one in the spindle
         self.returns_high = True  # G98
         self.cycle = None
         self.waiting = []  # rapids behind a hole, which a next hole may make needless
@@ -176,6 +187,9 @@ class Course:
 
     def refuse(self, text):
         raise Refused(f"{self.place}: {text}")
+
+    def refuse_word(self, letter, value):
+        self.refuse(f"{letter}{number(value)} cannot be said in a CL file: take the word out of the job")
 
     def write(self, line):
         self.lines.append(line)
@@ -249,7 +263,13 @@ class Course:
             return
         if name == "G80":
             self.end_cycle()
-        if name in self.asked.leave_out or name in SILENT:
+        if name in self.asked.leave_out:
+            return
+        for letter, value in sorted(words.items()) if name in WORDS else ():
+            # A line number says nothing of the cut, and nothing is changed by the speed that there is.
+            if letter not in WORDS[name] + "N" and (letter != "S" or value != self.speed):
+                self.refuse_word(letter, value)
+        if name in SILENT:
             return
         if name == "G0":
             self.move_rapid(words)
@@ -275,6 +295,8 @@ class Course:
             if self.systems != ["G54"]:
                 self.write(f"SET/OFSETL,{SYSTEMS.index(name) + 1}")
         elif name == "G4":
+            if "P" not in words:
+                self.refuse("G4 without P, its seconds")
             self.write(f"DELAY/{number(words['P'])}")
         elif name in ("M0", "M1"):
             self.write("STOP" if name == "M0" else "OPSTOP")
@@ -288,10 +310,18 @@ class Course:
         elif name in COOLANT:
             self.write(f"COOLNT/{COOLANT[name]}")
         elif name == "M6":
-            self.write(f"LOADTL/{int(words['T'])}")
+            if not float(words.get("T", math.nan)).is_integer():
+                self.refuse("M6 without T, a tool's number")
+            self.tool = words["T"]
+            self.write(f"LOADTL/{int(self.tool)}")
             self.feed = None
-        elif name == "G43" and len(words) <= 1:
-            pass  # `post` writes it with every tool
+        elif name == "G43":
+            # `post` writes it with every tool, and takes the length of that tool.
+            if words.get("H", self.tool) != self.tool:
+                self.refuse(
+                    f"H{number(words['H'])} is not the number of the tool in the spindle, whose length post takes: "
+                    "--leave-out G43"
+                )
         else:
             told = " ".join([name, *(f"{letter}{number(value)}" for letter, value in sorted(words.items()))])
             self.refuse(f"{told} cannot be said in a CL file: take it out of the job, or --leave-out {name}")
@@ -362,7 +392,13 @@ class Course:
             self.refuse("an arc before the path has said where in X, Y and Z it begins")
         if rotary != self.rotary:
             self.refuse(f"{name} turns a rotary axis besides")
+        if words.get("P", 1) != 1:
+            self.refuse_word("P", words["P"])
         offset = [words.get(letter, 0.0) for letter in "IJK"]
+        # Along its axis an arc has no centre: FreeCAD names a height between its ends, half the way of a helix.
+        low, high = sorted((0.0, at[self.plane] - self.at[self.plane]))
+        if not low - NEAR <= offset[self.plane] <= high + NEAR:
+            self.refuse_word("IJK"[self.plane], offset[self.plane])
         offset[self.plane] = 0.0
         radius = math.hypot(*offset)
         if radius < NEAR or "R" in words:
@@ -378,6 +414,8 @@ class Course:
 
     def set_feed(self, words):
         """F of a path is mm/s and modal; FEDRAT is mm/min. Where a path has none `post` says so."""
+        if words.get("F", 1.0) <= 0:
+            self.refuse(f"F{number(words['F'])} is no feed: give the tool controller one")
         self.path_feed = words.get("F", self.path_feed)
         feed = self.path_feed * 60
         if feed > 0 and feed != self.feed:
@@ -391,8 +429,10 @@ class Course:
         for letter in "ZR":
             if letter not in words:
                 self.refuse(f"{name} without {letter}")
-        if words.get("L", 1) > 1:
-            self.refuse(f"{name} L{words['L']:g}: a hole that is drilled more than once")
+        if words.get("L", 1) != 1:
+            self.refuse(f"{name} L{words['L']:g}: a hole that is not drilled once, but more than once or never")
+        if self.plane != 2:
+            self.refuse(f"{name} in another plane than G17")
         if None in at:
             self.refuse(f"{name} before the path has said where in X, Y and Z it begins")
         top = words["R"]
@@ -432,7 +472,7 @@ class Course:
         if name != "G84" and self.path_feed <= 0:
             self.refuse(f"{name} without a feed: the tool controller's vertical feed is 0")
         if name in ("G83", "G73"):
-            if not words.get("Q"):
+            if words.get("Q", 0.0) <= 0:
                 self.refuse(f"{name} without Q, the depth of its pecks")
             parts.append(f"STEP,{number(words['Q'])}")
         if words.get("P"):

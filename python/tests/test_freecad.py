@@ -181,11 +181,38 @@ def test_each_cycle(name: str, words: dict[str, float], said: str, processor: Mo
         ([*START, hole(1, F=0.0)], "vertical feed is 0"),
         ([("M3", {})], "without a speed"),
         ([("M3", {"S": 900.0}), *START, hole(1, "G84", S=500.0, F=1.0)], "and the spindle turns at 900 rev/min"),
+        ([*START, ("G1", {"X": 4.0, "S": 900.0})], "Op, command 4, G1: S900 cannot be said"),
+        *(([*START, ("G1", {"X": 4.0, word: 5.0})], f"command 4, G1: {word}5 cannot be said") for word in "EDQHIJKPRT"),
+        ([*START, ("G1", {"X": 4.0, "F": 0.0})], "F0 is no feed"),
+        ([*START, ("G3", {"X": 1.0, "Z": -4.0, "I": 5.0, "P": 2.0})], "command 4, G3: P2 cannot be said"),
+        ([*START, ("G2", {"X": 3.0, "I": 1.0, "K": -3.0})], "command 4, G2: K-3 cannot be said"),
+        ([*START, ("G2", {"X": 3.0, "Z": -3.0, "I": 1.0, "K": -2.5})], "command 4, G2: K-2.5 cannot be said"),
+        ([*START, ("G18", {}), ("G2", {"X": 3.0, "I": 1.0, "J": 1.0})], "command 5, G2: J1 cannot be said"),
+        ([*START, ("G19", {}), hole(1)], "command 5, G81: G81 in another plane than G17"),
+        ([*START, hole(1, Q=3.0)], "command 4, G81: Q3 cannot be said"),
+        ([*START, hole(1, L=0.0)], "or never"),
+        ([("M6", {"T": 1.0}), ("G43", {"H": 3.0})], "command 2, G43: H3 is not the number of the tool"),
+        ([("M6", {"T": 1.0}), ("G43", {"Z": 3.0})], "command 2, G43: Z3 cannot be said"),
+        ([("M6", {"T": 1.5})], "command 1, M6: M6 without T"),
+        ([("M6", {})], "command 1, M6: M6 without T"),
+        ([("G4", {"X": 2.0})], "command 1, G4: X2 cannot be said"),
+        ([("G4", {})], "command 1, G4: G4 without P"),
+        *(([(name, {"X": 2.0})], f"command 1, {name}: X2 cannot be said") for name in ("G90", "G40", "G54", "M5", "M30")),
     ],
 )
 def test_what_cannot_be_said_is_refused_by_its_place(commands: Commands, told: str, processor: ModuleType) -> None:
     with pytest.raises(processor.Refused, match=re.escape(told)):
         course(processor, item("Op", commands))
+
+
+def test_words_that_change_nothing_are_taken(processor: ModuleType) -> None:
+    """FreeCAD's own: a helix's K is half its way (``PathGeom.cmdsForEdge``), and a rapid has a feed."""
+    helix = ("G2", {"X": 3.0, "Y": 2.0, "Z": -4.0, "I": 1.0, "J": 0.0, "K": -1.5, "P": 1.0})
+    said: Commands = [("G43", {"H": 2.0}), *START, helix, ("G0", {"Z": 9.0, "F": 0.0}), ("G1", {"Z": 5.0, "S": 3000.0})]
+    bare: Commands = [*START, (helix[0], {**helix[1], "K": 0.0}), ("G0", {"Z": 9.0}), ("G1", {"Z": 5.0, "N": 9.0})]
+    assert course(processor, controller(2), item("Op", said)) == course(processor, controller(2), item("Op", bare))
+    other: Commands = [("G43", {"H": 3.0}), *START]
+    assert course(processor, item("Op", other), arguments="--leave-out G43") == course(processor, item("Op", START))
 
 
 def test_a_dressing_up_of_a_work_plane_without_the_plane_is_refused(processor: ModuleType) -> None:

@@ -21,7 +21,10 @@ def converted(source: Path, to: Path, *more: str) -> "subprocess.CompletedProces
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="tomllib is of Python 3.11")
 @pytest.mark.parametrize(
     "name",
-    ["vmc", "umc-750", "xyzac-trt", "head-head", "dmu50", "bc-fork", "linuxcnc-5axis", "head-table-bc", "ac-trunnion"],
+    [
+        *("vmc", "umc-750", "xyzac-trt", "head-head", "dmu50", "bc-fork", "linuxcnc-5axis", "head-table-bc"),
+        *("ac-trunnion", "grbl-router", "osp-mill"),
+    ],
 )
 def test_a_machine_comes_back_from_freecads_file(name: str, tmp_path: Path) -> None:
     """The law, travels and speeds, to the last digit that `post check` compares."""
@@ -136,6 +139,35 @@ def test_what_freecads_file_leaves_open_is_refused(
     run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml")
     assert run.returncode == 1 and told in run.stderr
     assert sorted(each.name for each in tmp_path.iterdir()) == ["mcv.fcm"]
+
+
+@pytest.mark.parametrize(
+    ("dialect", "line"),
+    [
+        ("grbl", "retract = { Z = 404.4 }"),  # 2 mm below the upper end of 16 in
+        ("okuma", "retract = { Z = 406.4 }"),
+        ("klipper", "retract = {}"),
+        ("marlin", "retract = {}"),
+        ("brother", 'unit_system = "mm"'),
+    ],
+)
+def test_a_control_that_is_told_more_gets_what_post_new_writes(
+    dialect: str, line: str, tmp_path: Path
+) -> None:
+    (tmp_path / "mcv.fcm").write_text(json.dumps(mill()))
+    run = converted(tmp_path / "mcv.fcm", tmp_path / "mcv.toml", "--dialect", dialect)
+    assert run.returncode == 0, run.stderr
+    assert line in (tmp_path / "mcv.toml").read_text()
+
+
+def mill() -> dict[str, object]:
+    """The one with three axes."""
+    data = freecad_machine()
+    machine = data["machine"]
+    assert isinstance(machine, dict)
+    for letter in "AC":
+        del machine["axes"][letter]
+    return data
 
 
 def test_a_machine_that_post_check_refuses_is_not_written(tmp_path: Path) -> None:

@@ -15,6 +15,30 @@ DIALECTS = {
     "hass_next_generation": "haas",
 }
 
+# Of controls that are told where Z stands clear, how far below the end of its travel (as `post new` writes it), and why.
+STANDS_CLEAR = {
+    "okuma": (0, "where Z stands clear, from the zero of G16 H0: read it off the machine"),
+    "grbl": (2, "Z at its end is on the homing switch: minus the pull-off ($27), or lower"),
+}
+# Firmware without machine coordinates.
+NO_POSITIONS = ("klipper", "marlin")
+# Of controls whose unit system no word of a program chooses, what it is by the units of the program.
+UNIT_SYSTEM = {
+    "okuma": {"metric": "1 mm", "imperial": "1 inch"},
+    "brother": {"metric": "mm", "imperial": "inch"},
+}
+
+
+def retract(dialect, axes):
+    """Where a control is to be told it: how the tool is retracted."""
+    if dialect in NO_POSITIONS:
+        return ["retract = {}  # nothing retracts: there are no machine coordinates", "change  = {}"]
+    if dialect not in STANDS_CLEAR or "Z" not in axes:
+        return []
+    below, why = STANDS_CLEAR[dialect]
+    least, most = axes["Z"].travel  # it counts away from the part: `post check` refuses another
+    return [f"retract = {{ Z = {number(max(least, most - below))} }}  # {why}"]
+
 
 def from_freecad(path, asked):
     try:
@@ -77,9 +101,14 @@ def from_freecad(path, asked):
         "[control]",
         f"dialect = {json.dumps(dialect, ensure_ascii=False)}",
         f'tcp     = "{"control" if rotary and kinematics.get("tcp_supported") else "post"}"',
+        *retract(dialect, axes),
     ]
-    if part_of(data, "output", "output").get("units", "metric") != "metric":
+    written = "metric" if part_of(data, "output", "output").get("units", "metric") == "metric" else "imperial"
+    if written == "imperial":
         lines.append('units   = "inch"')
+    if dialect in UNIT_SYSTEM:
+        system = json.dumps(UNIT_SYSTEM[dialect][written])
+        lines += ["", f"[control.{dialect}]", f"unit_system = {system}  # a parameter of the control: compare"]
     speeds = (
         [
             (key, finite(heads[0].get(name, 0), f"toolhead: {name}"))

@@ -73,7 +73,8 @@ impl<C: Course> Verifier<'_, C> {
     /// and nothing is done then.
     #[inline]
     pub(super) fn goes_on(&mut self, motion: &Motion, places: &[ToolPlace]) -> bool {
-        let cuts = motion.kind == MotionKind::Feed && !motion.machine && motion.along != Some(false);
+        let cuts =
+            motion.kind == MotionKind::Feed && !motion.machine && motion.along != Some(false);
         if !self.quick.on || !cuts {
             return false;
         }

@@ -324,7 +324,6 @@ impl ExpandStage {
                 pace,
                 chord,
                 edge: if self.heads { arc.travel(t) } else { end.edge },
-                ..*end
             };
             self.go(line, motion, out);
         }

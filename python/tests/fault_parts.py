@@ -27,6 +27,11 @@ class Verb:
     arguments: tuple[str, ...]
     written: tuple[str, ...]
 
+    @property
+    def failed(self) -> int:
+        """The exit code of a run that could not do its work: `lint` has 1 for what it finds."""
+        return 2 if self.name == "lint" else 1
+
 
 def _verb(name: str, line: str, *written: str) -> Verb:
     return Verb(name, tuple(line.split()), written)

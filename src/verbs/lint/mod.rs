@@ -141,6 +141,10 @@ fn look(session: &Session, arguments: &LintArguments) -> Result<LookedOver, Fail
         summaries.push(LintSummary::new(&name, &machine.name, &linted));
         found.findings.extend(linted.findings);
     }
+    if text.is_empty() {
+        // Of nothing that was looked over nothing is written.
+        return Err(found.unread.into());
+    }
     let mut texts = Vec::new();
     texts.extend(arguments.json.as_ref().map(|_| match summaries.as_slice() {
         [one] => files::json(one),

@@ -10,7 +10,9 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
+use rustix::process::{
+    Pid, Signal, WaitId, WaitIdOptions, kill_process, kill_process_group, waitid,
+};
 
 use super::Limits;
 use super::channel::Channel;
@@ -22,7 +24,7 @@ use super::wire::Wire;
 /// Between two looks at a process that does not answer.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// How long a process that has hung up may take to end by itself.
+/// How long a process that has hung up may take to end by itself, and one that was killed to be gone.
 const ENDS: Duration = Duration::from_secs(1);
 
 /// The processes that run now: whoever ends the command kills them.
@@ -36,9 +38,15 @@ fn live() -> MutexGuard<'static, Vec<Pid>> {
 /// Kills the processes of all libraries, with what they have started.
 pub(crate) fn kill_all() {
     for process in live().iter() {
-        // It may be gone already.
-        let _ = kill_process_group(*process, Signal::KILL);
+        kill(*process);
     }
+}
+
+/// Kills a process that nobody has waited for, and the group that it was started in: it may have left that group.
+fn kill(process: Pid) {
+    // They may be gone already.
+    let _ = kill_process_group(process, Signal::KILL);
+    let _ = kill_process(process, Signal::KILL);
 }
 
 /// A library's process.
@@ -204,10 +212,19 @@ impl Process {
             && live.contains(&process)
         {
             // While nobody has waited for it, its number is its own.
-            let _ = kill_process_group(process, Signal::KILL);
+            kill(process);
             live.retain(|other| *other != process);
         }
-        self.child.wait().ok()
+        drop(live);
+        // A process that is killed ends, unless the system holds it (a disk that does not answer).
+        let killed = Instant::now();
+        while killed.elapsed() < ENDS {
+            match self.child.try_wait() {
+                Ok(None) => std::thread::sleep(Duration::from_micros(200)),
+                ended => return ended.ok().flatten(),
+            }
+        }
+        None
     }
 }
 

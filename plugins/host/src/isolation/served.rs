@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use post_plugin::{Batch, Deviation, Promise, Tolerance, WriteFault};
-use rustix::process::{Resource, Rlimit, Signal};
+use rustix::process::{Pid, Resource, Rlimit, Signal, getpid, kill_process_group};
 
 use super::channel::Channel;
 use super::message::{Description, Deviations, DialectOpened, Fitted, Request, Written};
@@ -85,6 +85,7 @@ fn limit(memory: u64) -> io::Result<()> {
 
 /// Ends this process, and what it has started, once the host does not run any more, whatever the library does.
 fn watch(host: u64) -> io::Result<()> {
+    let own: Pid = getpid();
     let watching = move || {
         let runs = || {
             let parent = rustix::process::getppid();
@@ -93,7 +94,8 @@ fn watch(host: u64) -> io::Result<()> {
         while runs() {
             std::thread::sleep(LOOK);
         }
-        let _ = rustix::process::kill_current_process_group(Signal::KILL);
+        // The group that it was started in: the library may have left it for one that is the user's.
+        let _ = kill_process_group(own, Signal::KILL);
         at_once(2)
     };
     std::thread::Builder::new().stack_size(1 << 16).spawn(watching).map(drop)

@@ -58,6 +58,15 @@ static void dies(size_t at) {
     for (;;)
         sum++;
 #endif
+#ifdef FAULT_LEAVES_GROUP
+    /* into that of the command, which is the user's */
+    if (setpgid(0, getpgid(getppid())))
+        abort();
+    printf("left\n");
+    fflush(stdout);
+    for (;;)
+        sum++;
+#endif
 #ifdef FAULT_SLEEPS
     sigset_t all;
     sigfillset(&all);
@@ -280,6 +289,9 @@ static void close_(void *ctx) {
 #ifdef FAULT_CLOSE_LOOPS
     for (;;)
         sum++;
+#endif
+#ifdef FAULT_CLOSE_CRASHES
+    *(volatile int *)8 = 1;
 #endif
 }
 

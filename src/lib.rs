@@ -16,7 +16,7 @@ pub fn run() -> ! {
     post_cli::run_to_end(|session| match verbs::moved() {
         Some(fault) => Err(CommandFault::Usage(fault)),
         None => verbs::run(session, &std::env::args_os().collect::<Vec<_>>(), |fault| {
-            verbs::misspelt(&fault).unwrap_or(fault)
+            verbs::misspelt().unwrap_or(fault)
         }),
     })
 }

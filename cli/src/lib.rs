@@ -5,16 +5,33 @@ pub mod arguments;
 pub mod failure;
 pub mod terminal;
 
+use std::hint::black_box;
+
 use failure::CommandFault;
 use post_host::{Isolation, Limits};
+use post_job::failure::Failure;
 use post_job::session::Session;
 use post_job::{files, plugin_finder};
+use post_machine::diagnostic::{Diagnostic, Severity};
 use terminal::Terminal;
 
 /// What tests reach; no part of the face.
 #[doc(hidden)]
 pub mod internals {
     pub use crate::terminal::plain;
+}
+
+/// All results count on the processor's rounding to the nearest number: another mode (of a library that was loaded into
+/// this process) is refused before anything is computed.
+fn check_rounding() -> Result<(), CommandFault> {
+    let little = black_box(f64::EPSILON / 16.0);
+    let sums = [black_box(1.0) + little, black_box(-1.0) - little, black_box(1.0) - little];
+    if sums == [1.0, -1.0, 1.0] {
+        return Ok(());
+    }
+    let message = "the processor does not round to the nearest number: this process was started with another rounding mode";
+    let help = "a library that is loaded into every process sets it (LD_PRELOAD, DYLD_INSERT_LIBRARIES): start post without it";
+    Err(Failure::from(Diagnostic::error("rounding-mode", message).help(help)).into())
 }
 
 /// Does `job`, tells why it failed, and ends the process. A process that was started for a library serves that instead.
@@ -31,7 +48,18 @@ pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), CommandFault>) -> ! {
         files::delete_temporary_files();
         told.findings(&[plugin_finder::diagnostic(fault, &[], None)]);
     });
-    let done = job(&session).and_then(|()| Ok(terminal::all_printed(&session)?));
+    let done = check_rounding()
+        .and_then(|()| job(&session))
+        .and_then(|()| Ok(terminal::all_printed(&session)?));
+    let unclosed = session.isolation().map_or_else(Vec::new, |isolation| isolation.close_faults());
+    let warnings = unclosed.iter().map(|fault| Diagnostic {
+        severity: Severity::Warning,
+        ..plugin_finder::diagnostic(fault, &[], None)
+    });
+    let warnings: Vec<Diagnostic> = warnings.collect();
+    if !warnings.is_empty() {
+        session.findings(&warnings);
+    }
     let code = done.as_ref().map_or_else(CommandFault::exit_code, |()| 0);
     if let Err(fault) = done {
         terminal::explain(&session, fault);

@@ -292,10 +292,11 @@ pub fn moved() -> Option<clap::Error> {
 
 /// What is wrong with a command line that begins with a misspelt verb: clap takes it for a CL file, and complains of what
 /// follows.
-pub fn misspelt(fault: &clap::Error) -> Option<clap::Error> {
+pub fn misspelt() -> Option<clap::Error> {
     let first = std::env::args_os().nth(1)?;
     let first = first.to_str()?;
-    if fault.kind() == ErrorKind::DisplayVersion && first.starts_with('-') {
+    // Of a flag, clap itself says what is wrong.
+    if first.starts_with('-') {
         return None;
     }
     let mut command = AllVerbs::command();

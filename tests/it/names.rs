@@ -192,6 +192,11 @@ fn a_misspelt_verb_is_told_and_no_file_is_looked_for() {
         let told = format!("a similar verb exists: '{meant}'");
         assert!(done.err.contains(&told), "{}", done.err);
     }
+    // A flag is no verb: what is wrong is said of what is wrong.
+    let done = run(command().args(["--plugins", ".", "--plugin-seconds", "soon", "part.cls"]), b"");
+    assert_eq!(done.code, 2, "{}", done.err);
+    assert!(done.err.contains("--plugin-seconds"), "{}", done.err);
+    assert!(!done.err.contains("there is no verb"), "{}", done.err);
 }
 
 #[test]

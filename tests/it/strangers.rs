@@ -9,9 +9,12 @@ use crate::common::{Run, command, names, post, root, run, sample};
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fs;
+use std::io::{BufRead as _, BufReader};
 use std::os::unix::fs::{PermissionsExt as _, symlink};
+use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 fn library(folder: &Path, name: &str) -> PathBuf {
     folder.join(format!("{DLL_PREFIX}post_{name}{DLL_SUFFIX}"))
@@ -117,17 +120,69 @@ fn a_plugin_that_dies_is_named_with_its_event_and_line_and_nothing_is_written() 
 
 #[test]
 fn a_plugin_that_does_not_return_is_stopped() {
-    for fault in ["LOOPS", "SLEEPS"] {
+    for fault in ["LOOPS", "SLEEPS", "LEAVES_GROUP"] {
         let (done, folder) = post_with(fault, &["-o", "part.nc", "--plugin-seconds", "0.3"]);
         let message = "event Start: it did not return within 0.3 s and was stopped in the middle of its work (`write` of ";
         assert!(done.err.contains(message), "{fault}: {}", done.err);
         refused(fault, &done, &folder);
     }
+}
+
+#[test]
+fn a_close_that_fails_is_told_once_and_waited_for_once() {
     // The program was whole before that.
-    let (done, folder) = post_with("CLOSE_LOOPS", &["-o", "part.nc", "--plugin-seconds", "0.3"]);
-    assert_eq!(done.code, 0, "{}", done.err);
-    let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
-    assert!(part.starts_with("G0 X1\n"), "{part}");
+    for (fault, message) in [
+        (
+            "CLOSE_LOOPS",
+            "it did not return within 3 s and was stopped in the middle of its work (`close` of ",
+        ),
+        (
+            "CLOSE_CRASHES",
+            "its process died of signal 11, SIGSEGV, in the middle of its work (`close` of ",
+        ),
+    ] {
+        let begun = std::time::Instant::now();
+        let (done, folder) = post_with(fault, &["-o", "part.nc", "--plugin-seconds", "3"]);
+        assert!(begun.elapsed().as_secs_f64() < 6.0, "{fault}: {:?}", begun.elapsed());
+        assert_eq!(done.code, 0, "{}", done.err);
+        assert_eq!(
+            done.err.matches("warning[plugin]: plugin `hostile` (").count(),
+            1,
+            "{}",
+            done.err
+        );
+        assert!(done.err.contains(message), "{fault}: {}", done.err);
+        let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        assert!(part.starts_with("G0 X1\n"), "{part}");
+    }
+}
+
+/// The command is killed while its plugin stands in the command's group: the plugin ends, and nobody else there.
+#[test]
+fn a_plugin_that_left_its_group_ends_with_the_command_and_takes_nobody_along() {
+    let plugins = hostile("LEAVES_GROUP");
+    let mut bystander = Command::new("sleep").arg("60").process_group(0).spawn().unwrap();
+    let mut posting = command()
+        .args(["-m", "ac-trunnion", &sample("blade.cls"), "--dialect", "hostile", "-o", "-"])
+        .arg("--plugins")
+        .arg(plugins.path())
+        .process_group(bystander.id().try_into().unwrap())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut heard = BufReader::new(posting.stderr.take().unwrap()).lines();
+    assert!(heard.any(|line| line.unwrap() == "left"));
+    posting.kill().unwrap();
+    posting.wait().unwrap();
+    // The plugin holds the same standard error until it ends.
+    let (tell, told) = std::sync::mpsc::channel();
+    std::thread::spawn(move || tell.send(heard.count()));
+    let ended = told.recv_timeout(Duration::from_secs(20));
+    let stands = bystander.try_wait().unwrap().is_none();
+    bystander.kill().unwrap();
+    bystander.wait().unwrap();
+    assert!(ended.is_ok() && stands, "{ended:?} {stands}");
 }
 
 #[test]

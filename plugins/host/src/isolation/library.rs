@@ -2,17 +2,17 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::Limits;
-use super::message::Description;
+use super::message::{Description, Request};
 use super::process::Process;
 use crate::call::LoadedLibrary;
 use crate::described::FunctionTable;
 use crate::judge::{judge_name, judge_options};
 use crate::library_file::LibraryFile;
 use crate::shown::sentence;
-use crate::{Plugin, PluginKind, Reason};
+use crate::{Plugin, PluginFault, PluginKind, Reason};
 
 /// Processes that wait for the next program, at most.
 const MOST_IDLE: usize = 8;
@@ -21,10 +21,13 @@ const MOST_IDLE: usize = 8;
 #[derive(Debug)]
 pub(crate) struct IsolatedLibrary {
     pub(crate) kind: PluginKind,
+    name: String,
     path: PathBuf,
     hash: String,
     limits: Limits,
     idle: Mutex<Vec<Process>>,
+    /// The sentence of its first `close` that failed.
+    unclosed: Mutex<Option<String>>,
 }
 
 /// Opens the library whose file was looked at.
@@ -48,10 +51,12 @@ pub(crate) fn open(
     };
     let library = IsolatedLibrary {
         kind,
+        name: name.to_owned(),
         path: file.path.clone(),
         hash: file.hash.clone(),
         limits,
         idle: Mutex::new(vec![process]),
+        unclosed: Mutex::default(),
     };
     let loaded = LoadedLibrary { name: name.to_owned(), path: path.to_owned() };
     Ok(Plugin {
@@ -95,10 +100,35 @@ impl IsolatedLibrary {
         Ok(process)
     }
 
+    /// Has a process close what it has open, for the next program. After a `close` that failed nobody is asked again: a
+    /// process ends as well, and a plugin that does not return is waited for once.
+    pub(crate) fn close(&self, mut process: Process) {
+        if !process.is_alive() || self.unclosed().is_some() {
+            return;
+        }
+        match process.ask::<()>(&Request::Close) {
+            Ok(()) => self.take_back(process),
+            Err(message) => {
+                self.unclosed().get_or_insert(message);
+            }
+        }
+    }
+
+    fn unclosed(&self) -> MutexGuard<'_, Option<String>> {
+        self.unclosed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What its first `close` failed of, if one did.
+    pub(crate) fn close_fault(&self) -> Option<PluginFault> {
+        let message = self.unclosed().clone()?;
+        let (plugin, path) = (self.name.clone(), Some(self.path.clone()));
+        Some(PluginFault { plugin, path, reason: Reason::Nonsense { message } })
+    }
+
     /// Takes a process back, for the next program.
-    pub(crate) fn take_back(&self, process: Process) {
+    fn take_back(&self, process: Process) {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
-        if process.is_alive() && idle.len() < MOST_IDLE {
+        if idle.len() < MOST_IDLE {
             idle.push(process);
         }
     }

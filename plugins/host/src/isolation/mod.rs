@@ -25,7 +25,8 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::{Plugin, Reason};
+use crate::described::FunctionTable;
+use crate::{Plugin, PluginFault, Reason};
 
 pub(crate) use library::IsolatedLibrary;
 pub(crate) use process::kill_all;
@@ -60,6 +61,16 @@ impl Isolation {
     /// Within `limits`; none where there are no such processes. The program must call [`serve_if_asked`] before it does anything else.
     pub fn new(limits: Limits) -> Option<Self> {
         Some(Self { limits, opened: Arc::default() })
+    }
+
+    /// Of each library whose `close` failed, in the order of opening: who it is and how. What it wrote is whole.
+    pub fn close_faults(&self) -> Vec<PluginFault> {
+        let opened = self.opened.lock().unwrap_or_else(PoisonError::into_inner);
+        let libraries = opened.iter().filter_map(|plugin| match &plugin.table {
+            FunctionTable::Isolated(library) => library.close_fault(),
+            _ => None,
+        });
+        libraries.collect()
     }
 
     /// The library at `path`, which must hold the plugin `name`.

@@ -40,12 +40,8 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
-        if let Some(mut process) = self.process.take() {
-            if process.is_alive() {
-                // A process that does not close serves nobody any more; the program is written.
-                let _: Result<(), String> = process.ask(&Request::Close);
-            }
-            self.library.take_back(process);
+        if let Some(process) = self.process.take() {
+            self.library.close(process);
         }
     }
 }

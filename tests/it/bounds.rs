@@ -212,7 +212,57 @@ fn what_a_machine_file_holds_has_an_end() {
     ] {
         refused(&on(&text), &[part, "error"]);
     }
-    refused(&posted("/dev/zero", &file("")), &["/dev/zero", "1048576 bytes"]);
+    refused(&posted("/dev/zero", &file("")), &["/dev/zero", "no regular file"]);
+    refused(&posted("./machines", &file("")), &["./machines is a folder, no machine file"]);
+}
+
+#[test]
+fn what_has_no_end_is_no_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    fs::write(at("part.nc"), "G0 X1\nM30\n").unwrap();
+    std::os::unix::fs::symlink("/dev/zero", at("list.jsonl")).unwrap();
+    let (program, list) = (at("part.nc"), at("list.jsonl"));
+    for (device, words) in [
+        ("/dev/zero", &["-m", "vmc", "/dev/zero", "-o", "-"][..]),
+        ("/dev/urandom", &["-m", "vmc", "/dev/urandom", "-o", "-"]),
+        ("/dev/zero", &["words", "/dev/zero"]),
+        ("/dev/zero", &["read", "/dev/zero", "-m", "vmc"]),
+        ("/dev/urandom", &["lint", "/dev/urandom", "-m", "vmc"]),
+        ("/dev/zero", &["verify", &program, "-m", "vmc", "--against", "/dev/zero"]),
+        ("/dev/zero", &["predict", &program, "-m", "vmc", "--measured", "/dev/zero"]),
+        ("/dev/zero", &["calibrate", "/dev/zero", "-m", "ac-trunnion"]),
+        ("list.jsonl", &["batch", &list]),
+    ] {
+        let done = bounded(words, b"");
+        assert_eq!(done.code, 1, "{words:?}: {}", done.err);
+        for part in [device, "no regular file"] {
+            assert!(done.err.contains(part), "{words:?}: {}", done.err);
+        }
+    }
+    // A CL file that cannot be read is a row of a batch.
+    let done = bounded(&["batch", "/dev/zero", "-m", "vmc"], b"");
+    assert!(format!("{}{}", done.out, done.err).contains("no regular file"), "{}", done.err);
+}
+
+/// Process substitution hands over a pipe by a name.
+#[test]
+fn a_pipe_with_a_name_is_an_input_and_a_table_in_it_is_bounded() {
+    let piped = |script: &str| {
+        let mut shell = command_as("bash");
+        shell.args(["-c", script, env!("CARGO_BIN_EXE_post")]);
+        run(&mut shell, file("GOTO/1,2,3").as_bytes())
+    };
+    let flags = "-q -m vmc --tool-length 100 -o -";
+    let direct = piped(&format!("\"$0\" {flags} -"));
+    assert_eq!(direct.code, 0, "{}", direct.err);
+    for script in [format!("\"$0\" {flags} <(cat)"), format!("\"$0\" {flags} /dev/stdin")] {
+        let done = piped(&format!("exec 3<&0; {}", script.replace("<(cat)", "<(cat <&3)")));
+        assert_eq!((done.code, &done.out), (0, &direct.out), "{script}: {}", done.err);
+    }
+    let done = piped("ulimit -f 200000; \"$0\" calibrate <(yes 1,2,3,4,5,6,7,8) -m ac-trunnion");
+    assert_eq!(done.code, 1, "{}", done.err);
+    assert!(done.err.contains("it is larger than 64 MiB"), "{}", done.err);
 }
 
 #[test]

@@ -223,6 +223,23 @@ fn broken_files_are_refused_by_their_lines() {
     assert!(broken("x.bin", "what is this").contains("neither its name nor its text"));
     assert!(broken("l.json", "PK\u{3}\u{4}zip").contains("packed archive"));
     assert!(broken("p.csv", "T,L\n1,2\n").contains("no column number"));
+    for nothing in ["", "; tools of the mill\n", "T0 P0 ;no tool\n"] {
+        let said = broken("tool.tbl", nothing);
+        assert!(said.contains("error[tools]: tool.tbl has no tools"), "{said}");
+    }
+}
+
+/// What ends a line is LF, CR and LF, or CR alone.
+#[test]
+fn a_table_has_the_same_tools_whatever_ends_its_lines() {
+    let (plain, _) = listed("tool.tbl", TBL, &[]);
+    assert!(plain.len() >= 2, "{plain:?}");
+    for end in ["\r\n", "\r"] {
+        assert_eq!(listed("tool.tbl", &TBL.replace('\n', end), &[]).0, plain, "{end:?}");
+    }
+    assert!(
+        broken("tool.tbl", &TBL.replace("98.25", "x").replace('\n', "\r")).contains("tool.tbl:3")
+    );
 }
 
 /// What is written in a format is read as it was: wear for itself or in the length, as the format has it.

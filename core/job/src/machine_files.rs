@@ -10,7 +10,7 @@ use post_machine::description::{
 };
 use post_machine::diagnostic::{Diagnostic, nearest};
 
-use crate::disk::{self, File};
+use crate::disk;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::tools;
@@ -230,6 +230,11 @@ fn check_extended(name: &str, folders: &[PathBuf]) -> Result<(), String> {
 /// Reads a machine file from the disk.
 pub fn read(session: &Session, path: &Path) -> Result<Source, Missing> {
     let fault = |why: String| Missing { message: format!("{}: {why}", path.display()), help: None };
+    if disk::is_dir(path) {
+        let message = format!("{} is a folder, no machine file", path.display());
+        let help = "name a file in it that ends in .toml, or give the folder by --machines and the machine by its bare name";
+        return Err(Missing { message, help: Some(help.to_owned()) });
+    }
     let bytes = read_bounded(path).map_err(|error| fault(error.to_string()))?;
     if bytes.len() > MOST_BYTES {
         let why = format!("longer than {MOST_BYTES} bytes, which no machine file is");
@@ -245,7 +250,7 @@ pub fn read(session: &Session, path: &Path) -> Result<Source, Missing> {
 fn read_bounded(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let most = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX);
-    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    disk::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 

@@ -210,7 +210,7 @@ pub fn spoken(finder: &Finder, machine: &Machine) -> Result<DialectVocabulary, F
 
 /// The file of offsets.
 pub fn offsets(session: &Session, source: &PathArg, machine: &Machine) -> Result<Offsets, Failure> {
-    let (name, file) = open_as(session, WHAT, source)?;
+    let (name, file) = open_table(session, WHAT, source)?;
     let mut text = String::new();
     let read = file.take(MOST_OFFSETS + 1).read_to_string(&mut text);
     read.map_err(|error| FileFault::Read { name: name.clone(), error })?;
@@ -270,16 +270,44 @@ pub fn open_as(
     what: &'static str,
     source: &PathArg,
 ) -> Result<(String, File), FileFault> {
+    open_within(session, what, source, u64::MAX)
+}
+
+/// As [`open_as`], a table of at most [`disk::MOST_TABLE`] bytes; of what has no end no more is copied.
+pub fn open_table(
+    session: &Session,
+    what: &'static str,
+    source: &PathArg,
+) -> Result<(String, File), FileFault> {
+    let (name, mut file) = open_within(session, what, source, disk::MOST_TABLE + 1)?;
+    let error = match file.seek(SeekFrom::End(0)) {
+        Ok(length) if length > disk::MOST_TABLE => disk::too_large(),
+        Ok(_) => match file.seek(SeekFrom::Start(0)) {
+            Ok(_) => return Ok((name, file)),
+            Err(error) => error,
+        },
+        Err(error) => error,
+    };
+    Err(FileFault::Read { name, error })
+}
+
+/// As [`open_as`]; of what is copied, `most` bytes.
+fn open_within(
+    session: &Session,
+    what: &'static str,
+    source: &PathArg,
+    most: u64,
+) -> Result<(String, File), FileFault> {
     let (Some(path), Some(named)) = (source.absolute(), source.path()) else {
         let name = "standard input".to_owned();
-        let copied = copied(&mut io::stdin().lock());
+        let copied = copied(&mut io::stdin().lock().take(most));
         return match copied {
             Ok(file) => Ok((name, file)),
             Err(error) => Err(FileFault::Read { name, error }),
         };
     };
     let fault = |error| FileFault::read(named, error);
-    let mut file = File::open(path).map_err(fault)?;
+    let file = disk::open(path).map_err(fault)?;
     let metadata = file.metadata().map_err(fault)?;
     if metadata.is_dir() {
         return Err(FileFault::ReadFolder(named.to_owned()));
@@ -289,7 +317,7 @@ pub fn open_as(
         session.read_files().note(what, path);
         return Ok((name, file));
     }
-    Ok((name, copied(&mut file).map_err(fault)?))
+    Ok((name, copied(&mut file.take(most)).map_err(fault)?))
 }
 
 /// What `input` gives, in a file without a name.

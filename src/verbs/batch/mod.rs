@@ -246,7 +246,7 @@ fn jobs(
             seeds.push(JobLine::of_file(file.to_string_lossy().into_owned()));
             continue;
         }
-        let text = disk::read_to_string(file).map_err(|error| FileFault::read(file, error))?;
+        let text = disk::read_table(file).map_err(|error| FileFault::read(file, error))?;
         session.read_files().note("the list of jobs", file);
         seeds.extend(JobLine::read(&file.display().to_string(), &text)?);
     }

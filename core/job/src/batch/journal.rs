@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::outcome::{FAILED, JobOutcome};
-use crate::disk::{File, OpenOptions};
+use crate::disk::{self, File, OpenOptions};
 use crate::files::FileFault;
 
 /// Outcomes by their keys, on the disk as soon as they are there.
@@ -27,7 +27,7 @@ impl Journal {
     pub fn open(path: &Path, resume: bool) -> Result<Self, FileFault> {
         let mut known = BTreeMap::new();
         let fault = |error| FileFault::read(path, error);
-        match File::open(path) {
+        match disk::open(path) {
             Ok(file) => {
                 let mut lines = BufReader::new(file);
                 let mut line = Vec::new();

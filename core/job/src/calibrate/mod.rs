@@ -15,11 +15,9 @@ use post_machine::diagnostic::{Diagnostic, meant};
 use crate::failure::Failure;
 use crate::files::{FileFault, PathArg};
 use crate::machine_files;
-use crate::nc_program::open_as;
+use crate::nc_program::open_table;
 use crate::session::Session;
 
-/// The largest table, bytes.
-const MOST_BYTES: u64 = 64 << 20;
 /// A reading that is farther off its ball than this many standard deviations of a distance is told.
 const FAR: f64 = 4.0;
 
@@ -97,14 +95,10 @@ pub fn find(session: &Session, request: &CalibrationRequest) -> Result<Calibrati
 
 /// The table's name and text.
 fn text(session: &Session, points: &PathArg) -> Result<(String, String), Failure> {
-    let (name, file) = open_as(session, "the table of readings", points)?;
+    let (name, mut file) = open_table(session, "the table of readings", points)?;
     let mut bytes = Vec::new();
-    let read = file.take(MOST_BYTES + 1).read_to_end(&mut bytes);
+    let read = file.read_to_end(&mut bytes);
     read.map_err(|error| FileFault::Read { name: name.clone(), error })?;
-    if bytes.len() as u64 > MOST_BYTES {
-        let message = format!("{name} is larger than {} MB", MOST_BYTES >> 20);
-        return Err(Diagnostic::error("calibrate", message).into());
-    }
     Ok((name, String::from_utf8_lossy(&bytes).into_owned()))
 }
 

@@ -14,7 +14,7 @@ use post_machine::description::{
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_report::solid;
 
-use crate::disk::{self, File};
+use crate::disk;
 
 /// Triangles that are read of one file.
 const MOST_TRIANGLES: usize = 2_000_000;
@@ -250,7 +250,7 @@ fn read_mesh(
     }
     let mut triangles = Vec::new();
     let mut count = 0;
-    let read = File::open(path).map_err(|error| error.to_string()).and_then(|file| {
+    let read = disk::open(path).map_err(|error| error.to_string()).and_then(|file| {
         let take = &mut |corners: [[f64; 3]; 3]| {
             count += 1;
             if count <= MOST_TRIANGLES {

@@ -374,6 +374,14 @@ pub fn exists(path: &Path) -> bool {
     metadata(path).is_ok()
 }
 
+/// Opens a file to be read.
+///
+/// # Errors
+/// There is none.
+pub fn open(path: impl AsRef<Path>) -> io::Result<File> {
+    File::open(path)
+}
+
 /// All of a file.
 ///
 /// # Errors

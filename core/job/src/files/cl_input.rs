@@ -8,7 +8,7 @@ use post_machine::diagnostic::{FurtherFile, SourceFiles};
 use super::file_id::FileId;
 use super::seen_files::SeenFiles;
 use super::{FileFault, PathArg};
-use crate::disk::File;
+use crate::disk;
 use crate::session::Session;
 
 /// A CL file that is read, and what is known of it.
@@ -55,7 +55,7 @@ impl ClInput {
             });
         };
         let fault = |error| FileFault::read(named, error);
-        let file = File::open(path).map_err(fault)?;
+        let file = disk::open(path).map_err(fault)?;
         let metadata = file.metadata().map_err(fault)?;
         if metadata.is_dir() {
             return Err(FileFault::ReadFolder(named.to_owned()));

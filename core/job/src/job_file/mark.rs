@@ -7,7 +7,7 @@ use post_grammar::text::as_remark;
 use post_machine::diagnostic::Diagnostic;
 
 use super::{is_job_file, paths, reading};
-use crate::disk::{self, File};
+use crate::disk;
 use crate::failure::Failure;
 use crate::files::PathArg;
 use crate::session::Session;
@@ -133,6 +133,6 @@ fn head(path: &Path) -> Option<String> {
         return None;
     }
     let mut bytes = Vec::new();
-    File::open(path).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
+    disk::open(path).ok()?.take(HEAD).read_to_end(&mut bytes).ok()?;
     Some(String::from_utf8_lossy(&bytes).into_owned())
 }

@@ -13,7 +13,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::job_keys::BESIDE;
 use super::{JobFile, JobKeys, JobMark, JobProgram, MOST_PROGRAMS, ToldSetting, paths};
-use crate::disk::{self, File};
+use crate::disk;
 use crate::failure::Failure;
 use crate::files::FileFault;
 use crate::machine_files;
@@ -51,7 +51,7 @@ pub(super) fn text_of(session: &Session, path: &Path) -> Result<String, Failure>
     session.read_files().note("the job file", path);
     let mut bytes = Vec::new();
     let most = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX);
-    File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)).map_err(fault)?;
+    disk::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)).map_err(fault)?;
     if bytes.len() > MOST_BYTES {
         let why = format!("longer than {MOST_BYTES} bytes, which no job file is");
         return Err(refused(why).into());

@@ -249,7 +249,7 @@ impl MeasuredRequest {
     ) -> Result<Overlay, Failure> {
         let zeros = self.zeros.clone();
         let zeros = zeros.by_axis(machine).map_err(|fault| *fault)?;
-        let (name, input) = nc_program::open_as(session, "the log", &self.log)?;
+        let (name, input) = nc_program::open_table(session, "the log", &self.log)?;
         let log = Log::read(machine, &self.form, &name, input)?;
         Ok(Overlay::new(log, zeros, period))
     }

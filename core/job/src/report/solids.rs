@@ -14,7 +14,7 @@ use post_report::table::{TableColumn, TableWriter};
 use super::given_bodies;
 use super::parts::{Parts, fault};
 use crate::clearance::{self, StockLeft};
-use crate::disk::{self, File};
+use crate::disk;
 use crate::failure::Failure;
 
 /// A body that is drawn as a machine file describes it.
@@ -290,7 +290,7 @@ fn load(given: &DrawnBody<'_>, most: usize) -> Result<DrawnSolid, Box<Diagnostic
     if !disk::is_file(path) {
         return Err(fault(&"it is no regular file", named));
     }
-    let file = File::open(path).map_err(|error| fault(&error, "check its rights"))?;
+    let file = disk::open(path).map_err(|error| fault(&error, "check its rights"))?;
     let read = DrawnSolid::read(&mut BufReader::new(file), most);
     read.map_err(|why| fault(&why, "let the CAD system write it again, as STL in mm"))
 }

@@ -95,7 +95,12 @@ fn text(session: &Session, table: &ToolTable) -> Result<String, Failure> {
         let bytes = fault.into_bytes();
         bytes.into_iter().map(char::from).collect()
     });
-    Ok(text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text))
+    let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
+    // Lines end with LF, CR and LF, or CR alone.
+    Ok(match text.contains('\r') {
+        true => text.replace("\r\n", "\n").replace('\r', "\n"),
+        false => text,
+    })
 }
 
 /// The bytes of a regular file: a pipe could keep the command waiting, a device has no end.

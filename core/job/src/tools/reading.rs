@@ -192,7 +192,7 @@ impl<'a> ToolReading<'a> {
         self.check_twice(&tools);
         if tools.is_empty() && self.findings.is_empty() {
             let help = "is it the right file, and written to its end?";
-            self.warn(0, format!("{} has no tools", self.name), help);
+            self.fault(0, format!("{} has no tools", self.name), help);
         }
         (tools, self.findings)
     }

@@ -163,7 +163,8 @@ fn a_plugin_that_left_its_group_ends_with_the_command_and_takes_nobody_along() {
     let plugins = hostile("LEAVES_GROUP");
     let mut bystander = Command::new("sleep").arg("60").process_group(0).spawn().unwrap();
     let mut posting = command()
-        .args(["-m", "ac-trunnion", &sample("blade.cls"), "--dialect", "hostile", "-o", "-"])
+        .args(["-m", "ac-trunnion", "--dialect", "hostile", "-o", "-"])
+        .arg(root().join(sample("blade.cls")))
         .arg("--plugins")
         .arg(plugins.path())
         .process_group(bystander.id().try_into().unwrap())

@@ -222,7 +222,7 @@ fn what_has_no_end_is_no_input() {
     let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     fs::write(at("part.nc"), "G0 X1\nM30\n").unwrap();
     std::os::unix::fs::symlink("/dev/zero", at("list.jsonl")).unwrap();
-    let (program, list) = (at("part.nc"), at("list.jsonl"));
+    let (program, list, rows) = (at("part.nc"), at("list.jsonl"), at("rows.csv"));
     for (device, words) in [
         ("/dev/zero", &["-m", "vmc", "/dev/zero", "-o", "-"][..]),
         ("/dev/urandom", &["-m", "vmc", "/dev/urandom", "-o", "-"]),
@@ -232,7 +232,7 @@ fn what_has_no_end_is_no_input() {
         ("/dev/zero", &["verify", &program, "-m", "vmc", "--against", "/dev/zero"]),
         ("/dev/zero", &["predict", &program, "-m", "vmc", "--measured", "/dev/zero"]),
         ("/dev/zero", &["calibrate", "/dev/zero", "-m", "ac-trunnion"]),
-        ("list.jsonl", &["batch", &list]),
+        ("list.jsonl", &["batch", &list, "-m", "vmc", "-o", &rows]),
     ] {
         let done = bounded(words, b"");
         assert_eq!(done.code, 1, "{words:?}: {}", done.err);
@@ -241,8 +241,9 @@ fn what_has_no_end_is_no_input() {
         }
     }
     // A CL file that cannot be read is a row of a batch.
-    let done = bounded(&["batch", "/dev/zero", "-m", "vmc"], b"");
-    assert!(format!("{}{}", done.out, done.err).contains("no regular file"), "{}", done.err);
+    let done = bounded(&["batch", "/dev/zero", "-m", "vmc", "-o", &rows], b"");
+    let row = fs::read_to_string(&rows).unwrap_or_default();
+    assert!(format!("{row}{}", done.err).contains("no regular file"), "{row}{}", done.err);
 }
 
 /// Process substitution hands over a pipe by a name.

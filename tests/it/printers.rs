@@ -384,7 +384,7 @@ fn a_rapid_at_another_feed_is_told() {
     for firmware in &FIRMWARE {
         let name = firmware.name;
         let program = posted(name);
-        let rapid = program.lines().filter(|line| line.starts_with("G0 ")).last().unwrap();
+        let rapid = program.lines().rfind(|line| line.starts_with("G0 ")).unwrap();
         for feed in ["", " F50.", " F9000."] {
             let other = rapid.replace(" F5000.", feed);
             assert_ne!(other, rapid);

@@ -2,8 +2,8 @@
 
 use super::{conversational, hash, instructions, names};
 use post_grammar::nc::{
-    Approach, JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcSyntax, NcTerm, NcValue,
-    Notation, parse_block,
+    Across, Approach, JumpDirection, NcBlock, NcExpression, NcFlow, NcItem, NcSyntax, NcTerm,
+    NcValue, Notation, parse_block,
 };
 
 fn block(line: &str, syntax: &NcSyntax) -> NcBlock {
@@ -98,6 +98,10 @@ fn value(value: &NcValue) -> String {
                 Approach::Shortest => "DC",
                 Approach::Positive => "ACP",
                 Approach::Negative => "ACN",
+                Approach::Across(Across { diameter: true, incremental: false }) => "DAC",
+                Approach::Across(Across { diameter: true, incremental: true }) => "DIC",
+                Approach::Across(Across { diameter: false, incremental: false }) => "RAC",
+                Approach::Across(Across { diameter: false, incremental: true }) => "RIC",
             };
             format!("{name}({})", self::value(inner))
         }

@@ -51,7 +51,7 @@ fn first_code(source: &str) -> Option<&str> {
 #[test]
 fn every_code_is_explained_and_every_explained_code_is_said() {
     let mut paths = Vec::new();
-    for folder in ["core", "grammar", "lsp", "papers", "plugins", "src"] {
+    for folder in ["cli", "core", "grammar", "lsp", "papers", "plugins", "src"] {
         sources(&root().join(folder), &mut paths);
     }
     let mut said: BTreeMap<String, PathBuf> = BTreeMap::new();

@@ -235,7 +235,9 @@ fn what_has_no_end_is_no_input() {
         ("list.jsonl", &["batch", &list, "-m", "vmc", "-o", &rows]),
     ] {
         let done = bounded(words, b"");
-        assert_eq!(done.code, 1, "{words:?}: {}", done.err);
+        // `lint` ends with 1 where it has found something.
+        let code = if words[0] == "lint" { 2 } else { 1 };
+        assert_eq!(done.code, code, "{words:?}: {}", done.err);
         for part in [device, "no regular file"] {
             assert!(done.err.contains(part), "{words:?}: {}", done.err);
         }
@@ -259,7 +261,9 @@ fn a_pipe_with_a_name_is_an_input_and_a_table_in_it_is_bounded() {
     assert_eq!(direct.code, 0, "{}", direct.err);
     for script in [format!("\"$0\" {flags} <(cat)"), format!("\"$0\" {flags} /dev/stdin")] {
         let done = piped(&format!("exec 3<&0; {}", script.replace("<(cat)", "<(cat <&3)")));
-        assert_eq!((done.code, &done.out), (0, &direct.out), "{script}: {}", done.err);
+        // The program is called after its input.
+        let body = |out: &str| out.lines().skip(2).map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!((done.code, body(&done.out)), (0, body(&direct.out)), "{script}: {}", done.err);
     }
     let done = piped("ulimit -f 200000; \"$0\" calibrate <(yes 1,2,3,4,5,6,7,8) -m ac-trunnion");
     assert_eq!(done.code, 1, "{}", done.err);

@@ -57,7 +57,8 @@ fn pair(first: &[&str], second: &[&str]) -> [Channel; 2] {
 
 #[test]
 fn channels_that_wait_by_other_lines_never_meet() {
-    let folder = shop(&pair(&["SYNC/1,1,2"], &["SYNC/1,2,1"]), "word = \"M{n+99}\"", "fanuc");
+    let wait = "word = \"M{n+99}\"\nmarks = [1, 100]";
+    let folder = shop(&pair(&["SYNC/1,1,2"], &["SYNC/1,2,1"]), wait, "fanuc");
     good(folder.path(), &["both.job.toml"]);
     let other = read(folder.path(), "m2.toml").replace("M{n+99}", "M{n+199}");
     fs::write(folder.path().join("m2.toml"), other).unwrap();

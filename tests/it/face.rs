@@ -230,7 +230,7 @@ fn what_the_mode_cannot_is_refused_or_written_without_it() {
     refused(&["tool.gauge=[400, 2, 520]"], "2 mm beside it");
     refused(&["mode.face.letter=Z"], "letter of another axis");
     refused(&["axis.X.travel=[-420, -390]"], "X would be");
-    refused(&["control.dialect=heidenhain"], "no polar interpolation");
+    refused(&["control.dialect=heidenhain"], "no word of it that begins polar interpolation");
     let cutcom =
         milled(&SQUARE, 300.0).replace("GOTO/-12.00000,12", "CUTCOM/LEFT\nGOTO/-12.00000,12");
     let made = run(folder.path(), &cutcom, &[]);

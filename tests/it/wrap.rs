@@ -245,7 +245,7 @@ fn what_the_mode_cannot_is_refused() {
     refused(&["mode.wrap.letter=Z"], "letter of another axis");
     refused(&["mode.wrap.radius=0"], "radius");
     refused(&["control.units=inch", "mode.wrap.lengths=true"], "in mm alone");
-    refused(&["control.dialect=heidenhain"], "none on a cylinder");
+    refused(&["control.dialect=heidenhain"], "no word of it that begins cylinder interpolation");
     let check = post(&["check", "lathe-xzc-mantle", "--tool-length", "60"]);
     let line = "mantle           G7.1 C38 to G7.1 C0: C is an angle of radius 38 mm";
     assert!(check.out.contains(line), "{}", check.out);

@@ -489,7 +489,7 @@ impl Engine {
             Some(register) => Ok(format!("{on} {}{register}", length.register)),
             None if length.by_itself => Ok(on.to_owned()),
             None => Err(
-                "no tool was loaded, so the length register is not known: load one, or set the \
+                "no tool was loaded, so the length register is not known: load one (LOADTL; --tool N where the CL file loads none), or set the \
                  option `length_register`"
                     .to_owned(),
             ),

@@ -20,6 +20,9 @@ const STRAIGHT_IN: f64 = 0.05;
 /// A motion of the program whose way does so: rounded, and on a way of the course that has a direction all the same.
 const NEARLY_STRAIGHT_IN: f64 = 0.08;
 
+/// Pieces of one way that are looked through for the next.
+const MOST_PIECES: usize = 4096;
+
 /// Directions that differ by this more are a corner, radians: what rounding does to the largest angle that is none.
 const ROUNDED: f64 = 1e-6;
 
@@ -39,10 +42,7 @@ impl<C: Course> Verifier<'_, C> {
         let (true, Some(first), Some(last)) = (headed, stands(begun), last) else {
             return;
         };
-        // The next way is read, where there is one.
-        let _ = self.track.get(last + 1);
-        let kept = self.track.kept().iter().skip(first).take(last + 2 - first);
-        let ways: Vec<TravelWay> = kept.filter_map(TravelWay::of).collect();
+        let ways = self.ways_about(first, last);
         if ways.is_empty() {
             return;
         }
@@ -68,8 +68,45 @@ impl<C: Course> Verifier<'_, C> {
     }
 }
 
+impl<C: Course> Verifier<'_, C> {
+    /// The ways of the elements from `first` to `last`, that before them and that behind them which lead elsewhere: a way on
+    /// which the tool axis turns is cut into pieces of one direction.
+    fn ways_about(&mut self, first: usize, last: usize) -> Vec<TravelWay> {
+        let mut ways: Vec<TravelWay> = Vec::new();
+        for index in first..=last + MOST_PIECES {
+            let Some(element) = self.track.get(index) else {
+                break;
+            };
+            let way = TravelWay::of(element);
+            let elsewhere =
+                way.is_none_or(|way| ways.last().is_none_or(|last| last.is_apart(&way)));
+            ways.extend(way.filter(|_| elsewhere));
+            if index > last && elsewhere {
+                break;
+            }
+        }
+        let kept = self.track.kept().iter().take(first).rev().filter_map(TravelWay::of);
+        let behind = kept.chain(self.ways_behind.into_iter().rev().flatten());
+        let before =
+            ways.first().and_then(|way| behind.into_iter().find(|other| other.is_apart(way)));
+        before.into_iter().chain(ways).collect()
+    }
+
+    /// Keeps the way of an element that is left behind.
+    pub(super) fn leave_way(&mut self, element: &Element) {
+        let Some(way) = TravelWay::of(element) else {
+            self.ways_behind = [None; 2];
+            return;
+        };
+        if self.ways_behind[1].is_none_or(|last| last.is_apart(&way)) {
+            self.ways_behind = [self.ways_behind[1], Some(way)];
+        }
+    }
+}
+
 /// A way of the course with a direction across the tool.
-struct TravelWay {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TravelWay {
     /// Line of the CL file.
     line: u64,
     /// That direction, of length one, part frame.
@@ -77,9 +114,17 @@ struct TravelWay {
 }
 
 impl TravelWay {
+    /// Whether it has another direction.
+    fn is_apart(&self, other: &Self) -> bool {
+        (self.direction - other.direction).norm() > ROUNDED
+    }
+
+    /// That of a cut; none of anything else.
     fn of(element: &Element) -> Option<Self> {
         let way = element.to.point - element.from.point;
-        let direction = laid(way, &element.from.axis, STRAIGHT_IN).filter(|_| element.is_cut())?;
+        laid(way, &element.from.axis, STRAIGHT_IN).filter(|_| element.is_cut())?;
+        // Not laid across the tool: that turns on the way.
+        let direction = way.normalize();
         Some(Self { line: element.line, direction })
     }
 }

@@ -231,6 +231,8 @@ pub struct Verifier<'m, C> {
     places: Vec<ToolPlace>,
     last_end: chop::LastEnd,
     spare: Vec<ShareSpan>,
+    /// The last two ways of the course in two directions that were left behind, where an edge is headed along them.
+    ways_behind: [Option<edge::TravelWay>; 2],
     /// Where the program could stand as the cut at hand began.
     begun: Vec<ShareSpan>,
     /// What the spindle was told since the tool came or since it was compared.
@@ -298,6 +300,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             places: Vec::new(),
             last_end: chop::LastEnd::default(),
             spare: Vec::new(),
+            ways_behind: [None; 2],
             begun: Vec::new(),
             worked: Vec::new(),
             turned: Vec::new(),
@@ -612,6 +615,9 @@ impl<'m, C: Course> Verifier<'m, C> {
             let Some(element) = self.track.pop() else {
                 break;
             };
+            if self.machine.edge.is_some() && !matches!(element.what, ElementKind::Event(..)) {
+                self.leave_way(&element);
+            }
             if let ElementKind::Event(event, false) = &element.what {
                 let message = format!("{} is left out", state::event_name(event));
                 let place = BlockPlace { line: self.block.nc_line, number: self.block.block };

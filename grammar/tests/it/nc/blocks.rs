@@ -202,7 +202,7 @@ fn blocks_of_numbers_and_brackets() {
         ("G15 H1", "G=15 H=1"),
         ("HL=1 X=5", "HL:1 X=5"),
         ("M98 P1000 L3", "M=98 P=1000 L=3"),
-        ("@10 ^45", ""),
+        ("@10 ^45", "@=10 ^=45"),
     ] {
         if expected.is_empty() {
             assert!(parse_block(line, &hash()).is_err(), "{line}");

@@ -122,7 +122,9 @@ impl Dialect for Boastful {
             "drops a probe" => Capabilities::PROBE,
             _ => Capabilities::TOOL_TABLE,
         };
-        let left_out = [left_out, Capabilities::CYCLE_NO_DWELL];
+        // Facts of printers' firmware, which the format tells too.
+        let firmware = [Capabilities::RAPIDS_AT_FEED, Capabilities::COMMAND_A_LINE];
+        let left_out = [left_out, Capabilities::CYCLE_NO_DWELL, firmware[0], firmware[1]];
         let declared = CAPABILITIES.iter().filter(|spec| !left_out.contains(&spec.set));
         declared.fold(Capabilities::NONE, |all, spec| all | spec.set)
     }

@@ -50,19 +50,14 @@ struct Wait {
 /// Two channels whose machine files wait by other words: one control reads both programs, and the lines of one mark would be
 /// two marks to it.
 fn words_apart(programs: &[ChannelProgram<'_>]) -> Option<Diagnostic> {
-    let said = |program: &ChannelProgram<'_>| {
-        let word = program.machine.wait.as_ref().and_then(|wait| wait.word());
-        word.filter(|_| !program.outcome.report.waits.is_empty()).map(str::to_owned)
-    };
-    let said: Vec<(usize, String)> = programs
-        .iter()
-        .enumerate()
-        .filter_map(|(index, program)| Some((index + 1, said(program)?)))
-        .collect();
-    let [(one, first), (other, second)] = said.windows(2).find(|pair| pair[0].1 != pair[1].1)?
-    else {
-        return None;
-    };
+    let waiting =
+        programs.iter().zip(1..).filter(|(program, _)| !program.outcome.report.waits.is_empty());
+    let said = waiting.filter_map(|(program, channel)| {
+        Some((channel, program.machine.wait.as_ref()?.word.as_deref()?))
+    });
+    let said: Vec<(u32, &str)> = said.collect();
+    let apart = said.windows(2).find(|pair| pair[0].1 != pair[1].1)?;
+    let ((one, first), (other, second)) = (apart[0], apart[1]);
     let message = format!(
         "channels {one} and {other} wait by other lines, {first} and {second}: the control would never see them meet"
     );

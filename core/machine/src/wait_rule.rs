@@ -22,7 +22,7 @@ const CHANNELS: [&str; 4] = ["{channels}", "{digits}", "{sum}", "{others}"];
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WaitRule {
     /// The line of the program, as the file has it; none if the control has no word for it.
-    pub(crate) word: Option<String>,
+    pub word: Option<String>,
     /// Least and largest mark of a CL file.
     pub(crate) marks: [u32; 2],
     /// Number of the channel that the machine file describes, from 1; none if nothing says it.
@@ -54,11 +54,6 @@ pub struct WaitLack {
 }
 
 impl WaitRule {
-    /// The line of the program, as the file has it; none if the control has no word for it.
-    pub fn word(&self) -> Option<&str> {
-        self.word.as_deref()
-    }
-
     /// The line for a mark.
     ///
     /// # Errors

@@ -667,6 +667,11 @@ impl Machine {
         self.words_hold_on_length_alone() || self.clearance.shortens_ways()
     }
 
+    /// The tool has a leading edge, and that is headed along the direction of travel.
+    pub fn heads_edge(&self) -> bool {
+        self.edge.is_some() && self.solution.edge == EdgeSource::Travel
+    }
+
     /// The head that `HEAD/name` swaps in.
     pub fn head(&self, name: &str) -> Option<&Head> {
         self.heads.iter().find(|head| head.name == name)

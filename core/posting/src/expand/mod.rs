@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use post_machine::description::{Cycles, EdgeSource, Machine};
+use post_machine::description::{Cycles, Machine};
 use post_machine::diagnostic::{Diagnostic, Short, SourceFiles};
 use post_plugin::{Capabilities, Cycle};
 
@@ -137,7 +137,7 @@ impl ExpandStage {
             only_said: false,
             // An edge turns with the path.
             keeps: tangential.is_none().then_some(keeps),
-            heads: machine.edge.is_some() && machine.solution.edge == EdgeSource::Travel,
+            heads: machine.heads_edge(),
             tangential,
             findings: findings.clone(),
         }

@@ -5,7 +5,6 @@
 //! how is the program's own business.
 
 use nalgebra::Vector3;
-use post_machine::description::EdgeSource;
 
 use super::Verifier;
 use super::place::{PlaceDistance, ShareSpan, ToolPlace, angle_of};
@@ -34,9 +33,8 @@ impl<C: Course> Verifier<'_, C> {
         places: &[ToolPlace],
         begun: &[ShareSpan],
     ) {
-        let headed = self.machine.edge.is_some()
-            && self.machine.solution.edge == EdgeSource::Travel
-            && places.windows(2).any(|ends| travels(&ends[0], &ends[1]));
+        let headed =
+            self.machine.heads_edge() && places.windows(2).any(|ends| travels(&ends[0], &ends[1]));
         let stands = |reach: &[ShareSpan]| reach.iter().position(|span| !span.is_empty());
         let last = self.reach.iter().rposition(|span| !span.is_empty());
         let (true, Some(first), Some(last)) = (headed, stands(begun), last) else {
@@ -66,9 +64,7 @@ impl<C: Course> Verifier<'_, C> {
         self.found.axis.take(by, motion.line, cl_line);
         self.fault("deviation", message, Some(motion), Some(cl_line), Some(by));
     }
-}
 
-impl<C: Course> Verifier<'_, C> {
     /// The ways of the elements from `first` to `last`, that before them and that behind them which lead elsewhere: a way on
     /// which the tool axis turns is cut into pieces of one direction.
     fn ways_about(&mut self, first: usize, last: usize) -> Vec<TravelWay> {

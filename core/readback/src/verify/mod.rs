@@ -615,7 +615,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             let Some(element) = self.track.pop() else {
                 break;
             };
-            if self.machine.edge.is_some() && !matches!(element.what, ElementKind::Event(..)) {
+            if self.machine.heads_edge() && !matches!(element.what, ElementKind::Event(..)) {
                 self.leave_way(&element);
             }
             if let ElementKind::Event(event, false) = &element.what {

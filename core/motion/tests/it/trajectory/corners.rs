@@ -30,6 +30,15 @@ fn square(
     (program, points)
 }
 
+/// A machine whose control makes corners so.
+fn blending(blend: &str) -> Machine {
+    trunnion(
+        "max_feed = 30000, max_accel = 2000",
+        "max_feed = 7200, max_accel = 600",
+        &format!("period = 0.0002\nblend = \"{blend}\""),
+    )
+}
+
 fn off(point: Vector3<f64>, [a, b]: [Vector3<f64>; 2]) -> f64 {
     let way = b - a;
     let share = ((point - a).dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
@@ -41,11 +50,7 @@ fn corners_are_blended_within_their_tolerance() {
     let (rounds, mut rng) = randomised(60u16, 31);
     for round in rounds {
         let blend = ["overlap", "round"][usize::from(round % 2)];
-        let machine = trunnion(
-            "max_feed = 30000, max_accel = 2000",
-            "max_feed = 7200, max_accel = 600",
-            &format!("period = 0.0002\nblend = \"{blend}\""),
-        );
+        let machine = blending(blend);
         let tolerance = rng.order(-3.0, 0.0);
         let turn = rng.range(0.1, 3.1);
         let corner = CornerMode::Blend { tolerance: Some(tolerance) };
@@ -68,11 +73,7 @@ fn corners_are_rounded_within_their_distance() {
     let (rounds, mut rng) = randomised(40u16, 33);
     for round in rounds {
         let blend = ["overlap", "round"][usize::from(round % 2)];
-        let machine = trunnion(
-            "max_feed = 30000, max_accel = 2000",
-            "max_feed = 7200, max_accel = 600",
-            &format!("period = 0.0002\nblend = \"{blend}\""),
-        );
+        let machine = blending(blend);
         let distance = rng.order(-1.5, 0.5);
         let (turn, feed) = (rng.range(0.3, 2.5), rng.order(3.5, 4.3));
         let strays = |corner: CornerMode| {

@@ -107,6 +107,13 @@ fn what_a_file_leaves_in_force_is_named_anew_or_refused() {
 
 /// Whatever stands together is held together, and what is wrong is told of its own file.
 #[test]
+fn a_file_without_a_line_is_told_at_its_first() {
+    let folder = folder(&[("empty.apt", ""), ("a.apt", FIRST)]);
+    let arguments = ["-m", "vmc", "--tool-length=100", "empty.apt", "--then=a.apt", "--allow=FINI"];
+    refused(folder.path(), &arguments, &["empty.apt:1"]);
+}
+
+#[test]
 fn every_verb_takes_the_files_of_a_job() {
     let samples = ["blade.cls", "facets.apt", "s-piece.cls", "lever.apt", "disc-blade.cls"];
     let (rounds, mut rng) = randomised(9, 29_016);

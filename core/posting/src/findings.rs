@@ -175,6 +175,8 @@ impl Findings {
 
     /// A finding with its place at a line of the CL file.
     pub(crate) fn placed(&self, line: u64, finding: Diagnostic) -> Diagnostic {
+        // A file without a record ends on its first line.
+        let line = line.max(1);
         let text = self.text(line);
         let place = SourcePlace::new(self.file(), line, &text, 0..text.len());
         finding.at(Some(place))

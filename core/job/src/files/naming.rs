@@ -4,11 +4,11 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::TempPath;
+use tempfile::{Builder, TempPath};
 
-use super::abandoned;
+use super::abandoned::{self, PREFIX, former_suffix};
 use super::file_id::{FileId, folder};
-use super::temporary::{Temporary, former, live};
+use super::temporary::{Temporary, forget_former, live};
 
 /// Why not all texts have their names.
 #[derive(Debug)]
@@ -32,8 +32,9 @@ struct NamedFile {
 struct FormerFile {
     /// A name of its own that is deleted at the end.
     path: TempPath,
-    /// As long as it is held no other run deletes that name.
-    _held: Option<File>,
+    /// As long as they are held, what stands there and what has that name (a copy, on a disk without hard links), no other
+    /// run deletes that name.
+    _held: [Option<File>; 2],
 }
 
 /// Gives all texts their names in turn. If one of them cannot have it, what the others replaced is put back. A signal
@@ -54,6 +55,10 @@ pub fn name_all(texts: &mut [(Temporary, PathBuf)]) -> Result<(), NamingFault> {
                 return Err(NamingFault { index, error, stuck });
             }
         }
+    }
+    for NamedFile { target, old } in named {
+        drop(old);
+        forget_former(&target);
     }
     Ok(())
 }
@@ -77,14 +82,18 @@ fn second_name(target: &Path) -> io::Result<Option<FormerFile>> {
         return Ok(None);
     }
     let held = abandoned::held(target);
-    let second = former().make_in(folder(target), |path| {
+    let suffix = former_suffix(target);
+    let second = Builder::new().prefix(PREFIX).suffix(&suffix).make_in(folder(target), |path| {
         fs::hard_link(target, path).or_else(|error| match error.kind() {
             io::ErrorKind::AlreadyExists => Err(error),
             // A disk without hard links, such as a memory stick.
             _ => fs::copy(target, path).map(drop),
         })
     });
-    second.map(|file| Some(FormerFile { path: file.into_temp_path(), _held: held }))
+    second.map(|file| {
+        let copy = abandoned::held(file.path());
+        Some(FormerFile { path: file.into_temp_path(), _held: [held, copy] })
+    })
 }
 
 /// Puts back what was replaced, the last first; what cannot be put back.

@@ -1,6 +1,6 @@
 //! Temporary files that a signal finds and takes away: whoever presses Ctrl-C leaves no half of a program behind.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -10,14 +10,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::abandoned::{self, FORMER, PREFIX, SUFFIX};
+use super::abandoned::{self, PREFIX, SUFFIX};
+use super::file_id::folder as folder_of;
 
 /// Paths of the temporary files that exist. A file is made, renamed and deleted with this locked, so that a signal finds
 /// every one, and never one that has its name already.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// Folders in which this run has deleted what killed runs left: once, however many files it makes there.
-static TIDIED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+/// Folders in which this run has deleted what killed runs left, once, however many files it makes there; what was replaced
+/// in each while its run did not come to its end.
+static TIDIED: Mutex<BTreeMap<PathBuf, Vec<PathBuf>>> = Mutex::new(BTreeMap::new());
 
 /// The paths, locked: a signal waits until it is let go.
 pub type LivePaths = MutexGuard<'static, BTreeSet<PathBuf>>;
@@ -34,11 +36,15 @@ fn builder() -> Builder<'static, 'static> {
     builder
 }
 
-/// Names beside a file that is being replaced: what has one is the user's, and is kept whatever becomes of the run.
-pub fn former() -> Builder<'static, 'static> {
-    let mut builder = Builder::new();
-    builder.prefix(PREFIX).suffix(FORMER);
-    builder
+fn tidied() -> MutexGuard<'static, BTreeMap<PathBuf, Vec<PathBuf>>> {
+    TIDIED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What stood at `target` before runs that were killed is the user's no longer: this run has come to its end.
+pub fn forget_former(target: &Path) {
+    if let Some(formers) = tidied().get(folder_of(target)) {
+        abandoned::delete_former(formers, target);
+    }
 }
 
 /// A temporary file. Dropped, it is deleted.
@@ -67,9 +73,7 @@ impl Temporary {
 
     fn new(builder: &Builder<'_, '_>, folder: &Path) -> io::Result<Self> {
         let mut live = live();
-        if TIDIED.lock().unwrap_or_else(PoisonError::into_inner).insert(folder.to_owned()) {
-            abandoned::delete(folder);
-        }
+        tidied().entry(folder.to_owned()).or_insert_with(|| abandoned::delete(folder));
         let file = abandoned::claimed(|| builder.tempfile_in(folder))?;
         live.insert(file.path().to_owned());
         #[cfg(unix)]

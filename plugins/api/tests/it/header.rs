@@ -163,6 +163,7 @@ fn the_numbers_in_the_header_are_ours() {
 
 #[cfg(unix)]
 #[test]
+#[cfg_attr(miri, ignore = "Miri starts no compiler")]
 fn the_c_compiler_agrees_with_the_header() {
     for (language, standard) in [("c", "c11"), ("c++", "c++11")] {
         let mut compiler = Command::new("cc");

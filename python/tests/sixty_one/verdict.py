@@ -1,0 +1,238 @@
+"""A machine's program, posted by the command, read by words, moved by bodies, and held against the CL file."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import subprocess
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from sixty_one import passes, words
+from sixty_one.kinematics import Floats, Pose
+from sixty_one.passes import Pass, Work
+from sixty_one.table import Machine
+from sixty_one.words import Block
+
+HERE = Path(__file__).parent
+CHECKOUT = HERE.parents[2]
+ROBOTS = {"krl", "rapid", "urscript"}
+SHARES = np.linspace(0, 1, 9)
+DIGITS = 2e-3
+"""What the digits of the words may leave beside the tolerance, mm."""
+DEGREES = 5e-3
+"""The same of the tool's axis."""
+
+
+def command() -> str:
+    """The command."""
+    return os.environ.get("POST_COMMAND", str(CHECKOUT / "target/debug/post"))
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What came of a machine: works, in part, refused or wrong, and the largest deviations: tip in mm, the tool's axis and
+    its edge in degrees, drives in mm, over so many points."""
+
+    says: str
+    why: str = ""
+    tip: float = 0.0
+    axis: float = 0.0
+    edge: float | None = None
+    drive: float | None = None
+    points: int = 0
+
+
+class Wrong(Exception):
+    """The program is not what the CL file has."""
+
+
+def angle(one: Floats, other: Floats) -> float:
+    """Between two unit vectors, degrees."""
+    return math.degrees(2 * math.asin(min(1.0, float(np.linalg.norm(one - other)) / 2)))
+
+
+def posted(machine: Machine, work: Work, folder: Path, suffix: str = "") -> tuple[str | None, str]:
+    """The program, or none, and what the command said. The machine's second channel has files of its own."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "part.cls").write_text(work.text())
+    plugins = ["--plugins", str(Path(command()).parent)] if machine.dialect in ROBOTS else []
+    run = subprocess.run(
+        [command(), *plugins, "-m", str(HERE / f"{machine.name}{suffix}.toml"), "part.cls", "-o", "part.nc",
+         "--tool-length", f"{machine.length:g}", "--summary", "part.json"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
+    said = run.stderr + run.stdout
+    if run.returncode == 1:
+        return None, said
+    if run.returncode != 0:
+        raise RuntimeError(f"{machine.name}: {said}")
+    return (folder / "part.nc").read_text(), said
+
+
+@dataclass
+class Placed:
+    """A block with the poses on its way: the start is where the block before left off."""
+
+    block: Block
+    poses: list[Pose]
+    values: list[dict[str, float]]
+
+
+def mixed(one: Floats, other: Floats, share: float) -> Floats:
+    """Between two directions, on the great circle."""
+    whole = math.radians(angle(one, other))
+    if whole < 1e-9:
+        return one
+    return (math.sin((1 - share) * whole) * one + math.sin(share * whole) * other) / math.sin(whole)
+
+
+def between(machine: Machine, zero: dict[str, float], start: Block | None, end: Block, share: float) -> tuple[Pose, dict[str, float]]:
+    """The pose on the way to the end of a block."""
+    bodies, start = machine.bodies, start or end
+    told = {
+        name: start.words.get(name, value) + share * (value - start.words.get(name, value)) for name, value in end.words.items()
+    }
+    if end.frame is not None:
+        # A robot's straight move: the tip goes straight. Between two, the tool's own direction is on the great circle.
+        first = start.frame or end.frame
+        tips = [np.array(one[0]) - np.array(bodies.origin) for one in (first, end.frame)]
+        ways = [-np.array(one[1])[:, 2] for one in (first, end.frame)]
+        across = np.array(end.frame[1])[:, 0]
+        return Pose(tips[0] + share * (tips[1] - tips[0]), mixed(ways[0], ways[1], share), across), told
+    values = bodies.values({name: value for name, value in told.items() if not name.endswith("3")})
+    if not end.led:
+        for name, value in zero.items():
+            values[name] += value
+    pose = bodies.pose(values, machine.length)
+    if end.led:
+        tip = np.array([told[name] for name in "XYZ"])
+        axis = pose.axis
+        if machine.vectors:
+            axis = mixed(*(np.array([one.words[name] for name in ("A3", "B3", "C3")]) for one in (start, end)), share)
+        return Pose(tip, axis, pose.edge), values
+    if end.mode == "face":
+        # Right-angled coordinates of the part, X as the lathe counts it.
+        across = told["Y"] if "Y" in told else told["C"]
+        return replace(pose, tip=np.array([told["X"] / bodies.factors.get("X", 1.0), across, pose.tip[2]])), values
+    return pose, values
+
+
+def placed(machine: Machine, found: list[Block]) -> list[Placed]:
+    """The blocks with their poses; those whose words are not all known have none."""
+    zero = machine.bodies.at_origin(machine.length)
+    ways, last = [], None
+    needed = set(zero) | {joint.word for joint in machine.bodies.part + machine.bodies.tool}
+    if machine.vectors:
+        needed = {"X", "Y", "Z", "A3", "B3", "C3"}
+    for block in found:
+        known = all(not math.isnan(block.words.get(name, 0.0)) for name in needed)
+        if not known:
+            if block.cuts:
+                raise Wrong(f"line {block.line} cuts, and not all words are known: {block.words}")
+            last = None
+            continue
+        shares = SHARES if last is not None and last.led == block.led and last.mode == block.mode else SHARES[-1:]
+        both = [between(machine, zero, last, block, share) for share in shares]
+        ways.append(Placed(block, [pose for pose, _ in both], [values for _, values in both]))
+        last = block
+    return ways
+
+
+def aside(pose: Floats, start: Floats, end: Floats) -> float:
+    """From a straight between two points."""
+    way = end - start
+    share = min(1.0, max(0.0, float((pose - start) @ way) / max(float(way @ way), 1e-12)))
+    return float(np.linalg.norm(pose - start - share * way))
+
+
+def held(machine: Machine, work: Work, ways: list[Placed]) -> Verdict:
+    """All points of all passes, in order, and the ways between them."""
+    cuts = [one for one in ways if one.block.cuts]
+    tip, lean, edge, at, points = 0.0, 0.0, 0.0, 0, 0
+    room, most = machine.tolerance + DIGITS, machine.lean + DEGREES
+    for one in work.passes:
+        for place, goal, way in zip(range(len(one.tips)), one.tips, one.axes):
+            start = one.tips[place - 1] if place else one.above
+            for number in range(at, len(cuts)):
+                end = cuts[number].poses[-1]
+                if np.linalg.norm(end.tip - goal) <= room and angle(end.axis, way) <= most:
+                    break
+            else:
+                near = min(cuts[at:] or cuts, key=lambda c: float(np.linalg.norm(c.poses[-1].tip - goal)), default=None)
+                told = f", nearest line {near.block.line} at {near.poses[-1].tip.round(3)} {near.poses[-1].axis.round(4)}" if near else ""
+                raise Wrong(f"point {points + 1} at {goal.round(3)} {way.round(4)} is not met{told}")
+            tip = max(tip, float(np.linalg.norm(end.tip - goal)))
+            lean = max(lean, angle(end.axis, way))
+            for done in cuts[at : number + 1]:
+                for pose in done.poses:
+                    off = aside(pose.tip, start, goal)
+                    if off > room:
+                        raise Wrong(f"line {done.block.line} strays by {off:.4f} mm from the way to {goal.round(3)}")
+                    tip = max(tip, off)
+                    if place:
+                        edge = max(edge, heading(work, one, place, pose))
+            at, points = number + 1, points + 1
+    if work.edged and edge > most:
+        raise Wrong(f"the edge stands {edge:.3f} degrees beside the way")
+    return Verdict("works", "", tip, lean, edge if work.edged else None, None, points)
+
+
+def heading(work: Work, one: Pass, place: int, pose: Pose) -> float:
+    """By how much the edge is beside the travel, across the tool, degrees; corners may be taken on the spot."""
+    if not work.edged:
+        return 0.0
+    way = one.tips[place] - one.tips[place - 1]
+    way = way - (way @ pose.axis) * pose.axis
+    off = angle(way / np.linalg.norm(way), pose.edge)
+    # A way of chords is headed along a curve: as far as a chord turns to the next.
+    turn = 0.0
+    for other in (place - 1, place + 1):
+        if 1 <= other < len(one.tips):
+            more = one.tips[other] - one.tips[other - 1]
+            more = more - (more @ pose.axis) * pose.axis
+            turn = max(turn, angle(way / np.linalg.norm(way), more / np.linalg.norm(more)))
+    return max(0.0, off - turn)
+
+
+def driven(machine: Machine, ways: list[Placed], summary: dict) -> float | None:
+    """How far drives of the summary are from what the published formulas say, mm: the range over all blocks that are known."""
+    if not machine.drives:
+        return None
+    told = {one["name"]: one for one in summary.get("drives", [])}
+    worst = 0.0
+    for name, law in machine.drives:
+        found = []
+        for way in ways:
+            for pose in way.poses:
+                middle = np.array(machine.bodies.origin) + pose.tip + (machine.length - machine.bodies.nose[2]) * pose.axis
+                found.append(law(middle, pose.axis))
+        low, high = told[name]["least"], told[name]["most"]
+        # What the program does in machine coordinates is not among these.
+        worst = max(worst, low - min(found), max(found) - high)
+    return worst
+
+
+def judged(machine: Machine, folder: Path) -> Verdict:
+    """The verdict on a machine."""
+    text, said = posted(machine, machine.work, folder)
+    if text is None:
+        first = re.search(r"error\[[a-z-]+\].*", said)
+        return Verdict("refused", first[0] if first else said)
+    letters = {joint.word for joint in machine.bodies.part + machine.bodies.tool}
+    try:
+        found = words.read(machine.dialect, text, letters, machine.tips)
+        ways = placed(machine, found)
+        verdict = held(machine, machine.work, ways)
+        drive = driven(machine, ways, json.loads((folder / "part.json").read_text()))
+    except (Wrong, words.Unread) as why:
+        return Verdict("wrong", str(why))
+    if drive is not None and drive > 0.02:
+        return Verdict("wrong", f"a drive is off by {drive:.3f} mm")
+    return replace(verdict, says=machine.after, why=machine.but, drive=drive)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -228,18 +228,18 @@ def beside() -> Work:
 def level() -> Work:
     """An outline in one plane, of a wire that stands upright."""
     points = [[30 * math.cos(a), 22 * math.sin(a), 0.0] for a in np.radians(np.linspace(0, 340, 18))]
-    return Work((cut(points, (0, 0, 1), 0.0),))
+    tips = np.array(points)
+    return Work((Pass(tips, np.broadcast_to([0, 0, 1.0], tips.shape), np.array([12.0, 3.0, 0.0]), np.array([12.0, 3.0, 0.0])),))
 
 
 def sawn() -> Work:
-    """Cuts of a disc: it comes down beside the slab, and goes straight; its arbor lies across the way."""
+    """Cuts of a disc, from one side of a slab to the other: its arbor lies across the way."""
     passes = []
     for degrees in (0.0, 90.0, 30.0):
         way = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees)), 0.0])
         arbor = np.cross([0, 0, 1.0], way)
         points = np.array([x * way + 20 * arbor for x in (-200.0, -60.0, 200.0)])
-        up = np.array([0, 0, 60.0])
-        passes.append(Pass(points, np.broadcast_to(arbor, (3, 3)), points[0] + up, points[-1] + up))
+        passes.append(Pass(points, np.broadcast_to(arbor, (3, 3)), points[0] - 60 * way, points[-1] + 60 * way))
     return Work(tuple(passes), ("SPINDL/1500,CLW",), "FEDRAT/2000,MMPM", ("SPINDL/OFF",), True)
 
 
@@ -248,3 +248,8 @@ def walls() -> Work:
     rounds = [[25 * math.cos(a), 18 * math.sin(a), 0.4] for a in np.radians(np.linspace(0, 350, 25))]
     second = [[22 * math.cos(a), 16 * math.sin(a), 0.8 + 0.02 * n] for n, a in enumerate(np.radians(np.linspace(0, 330, 19)))]
     return printed(Work((cut(rounds, (0, 0, 1), 5.0), cut(second, (0, 0, 1), 5.0))))
+
+
+def waiting(side: float) -> Work:
+    """As ``turned``, where the channels wait for one another before each cut."""
+    return replace(turned(side), signs=("SYNC/1", "SYNC/2"))

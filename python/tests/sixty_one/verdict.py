@@ -16,7 +16,7 @@ from sixty_one import passes, words
 from sixty_one.kinematics import Floats, Pose
 from sixty_one.passes import Pass, Work
 from sixty_one.table import Machine
-from sixty_one.words import Block
+from sixty_one.words import UNKNOWN, Block
 
 HERE = Path(__file__).parent
 CHECKOUT = HERE.parents[2]
@@ -24,6 +24,9 @@ ROBOTS = {"krl", "rapid", "urscript"}
 SHARES = np.linspace(0, 1, 9)
 DIGITS = 2e-3
 """What the digits of the words may leave beside the tolerance, mm."""
+JOINTS = 0.05
+"""How far a joint may be from where the summary has it, mm or degrees: digits of words, seen from a pivot, and nine places on
+each way where a slide goes out and back again."""
 DEGREES = 5e-3
 """The same of the tool's axis."""
 
@@ -36,14 +39,14 @@ def command() -> str:
 @dataclass(frozen=True)
 class Verdict:
     """What came of a machine: works, in part, refused or wrong, and the largest deviations: tip in mm, the tool's axis and
-    its edge in degrees, drives in mm, over so many points."""
+    its edge in degrees, joints in mm or degrees, over so many points."""
 
     says: str
     why: str = ""
     tip: float = 0.0
     axis: float = 0.0
     edge: float | None = None
-    drive: float | None = None
+    joints: float = 0.0
     points: int = 0
 
 
@@ -56,14 +59,53 @@ def angle(one: Floats, other: Floats) -> float:
     return math.degrees(2 * math.asin(min(1.0, float(np.linalg.norm(one - other)) / 2)))
 
 
-def posted(machine: Machine, work: Work, folder: Path, suffix: str = "") -> tuple[str | None, str]:
-    """The program, or none, and what the command said. The machine's second channel has files of its own."""
+CHANNELS = (("upper", 1.0), ("lower", -1.0))
+"""What the files of two channels are called, and on which side of the centre each works."""
+
+
+def posted_together(machine: Machine, folder: Path) -> str | None:
+    """Both channels as a job; what was said if there are no programs."""
+    folder.mkdir(parents=True, exist_ok=True)
+    lines = [f"tool_length = {machine.length:g}"]
+    for name, side in CHANNELS:
+        (folder / f"{name}.cls").write_text(passes.waiting(side).text())
+        file = HERE / f"{machine.name}-{name}.toml"
+        lines += ["[[channel]]", f'machine = "{file}"', f'cl = "{name}.cls"', f'output = "{name}.nc"']
+    (folder / "part.job.toml").write_text("\n".join([*lines, ""]))
+    run = subprocess.run([command(), "part.job.toml"], cwd=folder, capture_output=True, text=True)
+    return None if run.returncode == 0 else run.stderr
+
+
+def both(machine: Machine, folder: Path) -> Verdict:
+    """The verdict on a machine of two channels: that of the worse, and that they wait for one another."""
+    said = posted_together(machine, folder)
+    if said is not None:
+        return refused(said)
+    found = []
+    for (name, side), bodies in zip(CHANNELS, (machine.bodies, machine.second or machine.bodies)):
+        text = (folder / f"{name}.nc").read_text()
+        if re.findall(r"^M1\d\d$", text, re.M) != ["M100", "M101"]:
+            raise Wrong(f"the {name} channel does not wait by M100 and M101")
+        own = replace(machine, bodies=bodies)
+        found.append(held(own, passes.waiting(side), placed(own, words.read(machine.dialect, text, {"X", "Z"}, False))))
+    worse = max(found, key=lambda one: one.tip)
+    return replace(worse, points=sum(one.points for one in found))
+
+
+def refused(said: str) -> Verdict:
+    """The first of the messages."""
+    first = re.search(r"error\[[a-z-]+\].*", said)
+    return Verdict("refused", first[0] if first else said)
+
+
+def posted(machine: Machine, work: Work, folder: Path) -> tuple[str | None, str]:
+    """The program, or none, and what the command said."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "part.cls").write_text(work.text())
     plugins = ["--plugins", str(Path(command()).parent)] if machine.dialect in ROBOTS else []
     run = subprocess.run(
-        [command(), *plugins, "-m", str(HERE / f"{machine.name}{suffix}.toml"), "part.cls", "-o", "part.nc",
-         "--tool-length", f"{machine.length:g}", "--summary", "part.json"],
+        [command(), *plugins, "-m", str(HERE / f"{machine.name}.toml"), "part.cls", "-o", "part.nc",
+         "--tool-length", f"{machine.length:g}", "--summary", "part.json", *machine.options],
         cwd=folder,
         capture_output=True,
         text=True,
@@ -132,7 +174,8 @@ def placed(machine: Machine, found: list[Block]) -> list[Placed]:
     if machine.vectors:
         needed = {"X", "Y", "Z", "A3", "B3", "C3"}
     for block in found:
-        known = all(not math.isnan(block.words.get(name, 0.0)) for name in needed)
+        missing = UNKNOWN if machine.vectors else 0.0
+        known = all(not math.isnan(block.words.get(name, missing)) for name in needed - left_out(block))
         if not known:
             if block.cuts:
                 raise Wrong(f"line {block.line} cuts, and not all words are known: {block.words}")
@@ -143,6 +186,11 @@ def placed(machine: Machine, found: list[Block]) -> list[Placed]:
         ways.append(Placed(block, [pose for pose, _ in both], [values for _, values in both]))
         last = block
     return ways
+
+
+def left_out(block: Block) -> set[str]:
+    """Words that a mode of the control does without."""
+    return {"C"} if block.mode == "face" and "Y" in block.words else set()
 
 
 def aside(pose: Floats, start: Floats, end: Floats) -> float:
@@ -170,7 +218,12 @@ def held(machine: Machine, work: Work, ways: list[Placed]) -> Verdict:
                 raise Wrong(f"point {points + 1} at {goal.round(3)} {way.round(4)} is not met{told}")
             tip = max(tip, float(np.linalg.norm(end.tip - goal)))
             lean = max(lean, angle(end.axis, way))
-            for done in cuts[at : number + 1]:
+            own = cuts[at : number + 1]
+            if not place:
+                # What comes before the way down from above are rapids that are written as feed moves.
+                starts = [k for k, done in enumerate(own) if np.linalg.norm(done.poses[0].tip - start) <= 0.5]
+                own = own[starts[-1] :] if starts else own[-1:]
+            for done in own:
                 for pose in done.poses:
                     off = aside(pose.tip, start, goal)
                     if off > room:
@@ -181,7 +234,7 @@ def held(machine: Machine, work: Work, ways: list[Placed]) -> Verdict:
             at, points = number + 1, points + 1
     if work.edged and edge > most:
         raise Wrong(f"the edge stands {edge:.3f} degrees beside the way")
-    return Verdict("works", "", tip, lean, edge if work.edged else None, None, points)
+    return Verdict("works", "", tip, lean, edge if work.edged else None, 0.0, points)
 
 
 def heading(work: Work, one: Pass, place: int, pose: Pose) -> float:
@@ -201,38 +254,72 @@ def heading(work: Work, one: Pass, place: int, pose: Pose) -> float:
     return max(0.0, off - turn)
 
 
-def driven(machine: Machine, ways: list[Placed], summary: dict) -> float | None:
-    """How far drives of the summary are from what the published formulas say, mm: the range over all blocks that are known."""
-    if not machine.drives:
-        return None
-    told = {one["name"]: one for one in summary.get("drives", [])}
+def led_to(machine: Machine, pose: Pose, values: dict[str, float]) -> dict[str, float]:
+    """Joints of a tip that the control keeps: its slides bring the tip there, the others being where they are told."""
+    bodies = machine.bodies
+    names = [joint.word for joint in bodies.part + bodies.tool if not joint.turns]
+    rest = {**values, **dict.fromkeys(names, 0.0)}
+    start = bodies.pose(rest, machine.length).tip
+    ways = np.stack([bodies.pose({**rest, name: 1.0}, machine.length).tip - start for name in names], axis=1)
+    found, *_ = np.linalg.lstsq(ways, pose.tip - start, rcond=None)
+    return {**values, **{name: float(value) for name, value in zip(names, found)}}
+
+
+def joined(machine: Machine, ways: list[Placed], summary: dict) -> float:
+    """How far the summary's ranges of axes and drives are from where bodies and published formulas have them, mm or degrees,
+    from the first pass to the last. A range that is wider at one end has the way to the part and from it: the nearer end
+    counts, and whatever lies outside."""
+    found: dict[str, list[float]] = {}
+    first, last = machine.work.passes[0].above, machine.work.passes[-1].away
+    begins = [k for k, way in enumerate(ways) if np.linalg.norm(way.poses[-1].tip - first) < 0.5]
+    ends_ = [k for k, way in enumerate(ways) if np.linalg.norm(way.poses[-1].tip - last) < 0.5]
+    # Words of a mode and poses are no joints: of these programs not all of the way is among what is found here.
+    modes = any(way.block.mode or way.block.frame for way in ways)
+    for number, way in enumerate(ways[begins[0] : ends_[-1] + 1]):
+        if way.block.frame is not None:
+            continue
+        for pose, values in list(zip(way.poses, way.values))[0 if number else -1 :]:
+            if way.block.led and not machine.vectors:
+                values = led_to(machine, pose, values)
+            if not machine.vectors and not way.block.mode:
+                for joint in machine.bodies.part + machine.bodies.tool:
+                    found.setdefault(joint.word, []).append(values[joint.word] + joint.shown)
+            middle = np.array(machine.bodies.origin) + pose.tip + (machine.length - machine.bodies.nose[2]) * pose.axis
+            for name, law in machine.drives:
+                found.setdefault("drive " + name, []).append(law(middle, pose.axis))
+    told = {one["name"]: one for one in summary["axes"]}
+    told |= {"drive " + one["name"]: one for one in summary.get("drives") or []}
+    turning = {joint.word for joint in machine.bodies.part + machine.bodies.tool if joint.turns}
+    if "W" in found:
+        # Z and a quill share their way, and where each is counted from is the builder's.
+        found = {name: values for name, values in found.items() if name not in ("Z", "W") or name in turning}
     worst = 0.0
-    for name, law in machine.drives:
-        found = []
-        for way in ways:
-            for pose in way.poses:
-                middle = np.array(machine.bodies.origin) + pose.tip + (machine.length - machine.bodies.nose[2]) * pose.axis
-                found.append(law(middle, pose.axis))
-        low, high = told[name]["least"], told[name]["most"]
-        # What the program does in machine coordinates is not among these.
-        worst = max(worst, low - min(found), max(found) - high)
+    for name, values_ in found.items():
+        if name in told:
+            low, high = told[name]["min"], told[name]["max"]
+            # Whole turns are one place.
+            shift = round((low + high - min(values_) - max(values_)) / 720) * 360 if name in turning else 0
+            ends = min(values_) + shift - low, high - max(values_) - shift
+            nearer = 0.0 if modes else min(abs(ends[0]), abs(ends[1]))
+            worst = max(worst, -ends[0], -ends[1], nearer)
     return worst
 
 
 def judged(machine: Machine, folder: Path) -> Verdict:
     """The verdict on a machine."""
-    text, said = posted(machine, machine.work, folder)
-    if text is None:
-        first = re.search(r"error\[[a-z-]+\].*", said)
-        return Verdict("refused", first[0] if first else said)
-    letters = {joint.word for joint in machine.bodies.part + machine.bodies.tool}
     try:
+        if machine.second:
+            return replace(both(machine, folder), says=machine.after, why=machine.but)
+        text, said = posted(machine, machine.work, folder)
+        if text is None:
+            return refused(said)
+        letters = {joint.word for joint in machine.bodies.part + machine.bodies.tool}
         found = words.read(machine.dialect, text, letters, machine.tips)
         ways = placed(machine, found)
         verdict = held(machine, machine.work, ways)
-        drive = driven(machine, ways, json.loads((folder / "part.json").read_text()))
+        joints = joined(machine, ways, json.loads((folder / "part.json").read_text()))
     except (Wrong, words.Unread) as why:
         return Verdict("wrong", str(why))
-    if drive is not None and drive > 0.02:
-        return Verdict("wrong", f"a drive is off by {drive:.3f} mm")
-    return replace(verdict, says=machine.after, why=machine.but, drive=drive)
+    if joints > JOINTS:
+        return Verdict("wrong", f"a joint is off by {joints:.3f}")
+    return replace(verdict, says=machine.after, why=machine.but, joints=joints)

@@ -30,7 +30,7 @@ class Block:
     named: set[str] = field(default_factory=set)
 
 
-WORD = re.compile(r"([A-Z])(3?=|\s*=\s*)?\s*(?:DC\()?([-+]?(?:\d+\.?\d*|\.\d+))\)?")
+WORD = re.compile(r"([A-Z])(3?=|\s*=\s*)?\s*(DC\(|ACP\(|ACN\()?([-+]?(?:\d+\.?\d*|\.\d+))\)?")
 LED = {"G43.4", "G234", "G169", "TRAORI", "TRAFO ON", "RTCP ON", "M128", "M428", "M150", "TRAORI(1)"}
 LEFT = {"G49", "G170", "TRAFOOF", "TRAFO OFF", "RTCP OFF", "M129", "M429", "M151"}
 MACHINE = {"G53", "SUPA", "M91", "G16"}
@@ -38,6 +38,18 @@ SILENT = {"G4", "G50", "G92", "G10", "G162"}
 """Codes whose blocks move nothing by their letters."""
 REFUSED = {"G2", "G3", "G68.2", "G91", "G20", "G70", "G51", "G16.1", "G101", "G68", "G28", "G30"}
 DRILLS = {"G73", "G81", "G82", "G83", "G84", "G85", "G86", "G89"}
+
+
+def reached(start: float, value: float, way: str | None) -> float:
+    """Where a turning axis comes to that is told a place within one turn: the shorter way, or counting up or down."""
+    if way is None or math.isnan(start):
+        return value
+    ahead = (value - start) % 360
+    if way == "ACP(":
+        return start + ahead
+    if way == "ACN(":
+        return start + ahead - (360 if ahead else 0)
+    return start + (ahead if ahead <= 180 else ahead - 360)
 
 
 def code(letter: str, value: str) -> str:
@@ -66,14 +78,15 @@ def blocks(text: str, letters: set[str], tips: bool, siemens: bool) -> Iterator[
             mode = "face" if block in ("TRANSMIT", "G12.1", "G112") else "mantle"
             if value and float(value[1]) == 0:
                 mode = ""
-            for letter in letters if mode else ():
-                at[letter] = UNKNOWN if letter in "XYC" else at[letter]
+            if mode == "face":
+                at |= {letter: UNKNOWN for letter in "XYC" if letter in letters or letter == "Y"}
             continue
         if block in ("TRAFOOF", "G13.1", "G113") and mode:
             mode = ""
-            at.update({letter: UNKNOWN for letter in letters if letter in "XYC"})
+            at.update({letter: UNKNOWN for letter in letters if letter in "XC"})
+            at.pop("Y", None) if "Y" not in letters else None
             continue
-        words = re.sub(r"\bDIAM(ON|OF)\b", "", block)
+        words = re.sub(r"\bDIAM(ON|OF)\b|\bHL=\d+", "", block)
         for name in (*LED, *LEFT, "#MCS ON", "#MCS OFF", "#MCS", "SUPA"):
             if not re.fullmatch(r"[GM][\d.]+", name) and name in words:
                 led = True if name in LED else False if name in LEFT else led
@@ -81,17 +94,17 @@ def blocks(text: str, letters: set[str], tips: bool, siemens: bool) -> Iterator[
         here = machine or "SUPA" in block or block.startswith("#MCS G")
         codes, found, rest = set(), {}, words
         for match in WORD.finditer(words):
-            letter, vector, value = match[1], match[2], match[3]
+            letter, vector, way, value = match.groups()
             rest = rest.replace(match[0], "", 1)
             if letter in "GM":
                 codes.add(code(letter, value))
             elif vector and vector.startswith("3"):
                 found[letter + "3"] = float(value)
-            elif letter in letters:
-                found[letter] = float(value)
+            elif letter in letters or (mode == "face" and letter == "Y"):
+                found[letter] = reached(at[letter], float(value), way)
             elif letter not in "FSTDHLPEQRN":
                 raise Unread(f"{line}: {raw}")
-        if rest.strip() not in ("", "HL=", "#", "L="):
+        if rest.strip():
             raise Unread(f"{line}: {raw} leaves {rest!r}")
         if codes & (REFUSED | DRILLS):
             raise Unread(f"{line}: {raw}")
@@ -140,8 +153,8 @@ def numbers(text: str) -> list[float]:
 ARM = "ABCUVW"
 
 
-def rapid(text: str, beside: str) -> Iterator[Block]:
-    """Of a module in RAPID: joint moves, each with its time where it cuts. ``beside`` are the axes beside the arm."""
+def rapid(text: str) -> Iterator[Block]:
+    """Of a module in RAPID: joint moves, each with its time where it cuts."""
     at: dict[str, float] = {}
     for line, raw in enumerate(text.splitlines(), 1):
         move = re.match(r"\s*MoveAbsJ\s+\[\[([^\]]*)\],\[([^\]]*)\]\](.*)", raw)
@@ -150,14 +163,13 @@ def rapid(text: str, beside: str) -> Iterator[Block]:
         if not move:
             continue
         at.update(zip(ARM, numbers(move[1])))
-        at.update(zip(beside, numbers(move[2])))
+        at.update(zip("XYZ", numbers(move[2])))
         yield Block(line, "\\T" in move[3], dict(at))
 
 
-def krl(text: str, beside: str) -> Iterator[Block]:
+def krl(text: str) -> Iterator[Block]:
     """Of a program in KRL: joint moves, and straight ones to poses."""
     names = {f"A{place + 1}": letter for place, letter in enumerate(ARM)}
-    names |= {f"E{place + 1}": letter for place, letter in enumerate(beside)}
     at: dict[str, float] = {}
     pose: dict[str, float] = {}
     for line, raw in enumerate(text.splitlines(), 1):
@@ -170,11 +182,11 @@ def krl(text: str, beside: str) -> Iterator[Block]:
             continue
         found = {name: float(value) for name, value in re.findall(r"([A-Z]\d?)\s+([-+]?[\d.]+)", move[2])}
         if move[1] == "PTP":
-            at.update({names[name]: value for name, value in found.items()})
+            at.update({names.get(name, name): value for name, value in found.items()})
             yield Block(line, False, dict(at))
             continue
         pose.update(found)
-        at.update({names[name]: value for name, value in found.items() if name[0] == "E"})
+        at.update({name: value for name, value in found.items() if name[0] == "E"})
         a, b, c = (math.radians(pose[name]) for name in "ABC")
         # Turned about Z by A, about the new Y by B, about the new X by C.
         rows = [
@@ -202,11 +214,10 @@ def read(dialect: str, text: str, letters: set[str], tips: bool) -> list[Block]:
     """The blocks of a program."""
     if dialect == "heidenhain":
         return list(klartext(text, letters, tips))
-    beside = "".join(letter for letter in "XYZ" if letter in letters)
     if dialect == "rapid":
-        return list(rapid(text, beside))
+        return list(rapid(text))
     if dialect == "krl":
-        return list(krl(text, beside))
+        return list(krl(text))
     if dialect == "urscript":
         return list(urscript(text))
     return list(blocks(text, letters, tips, dialect == "siemens"))

@@ -24,6 +24,15 @@ def down(way: Vector) -> Vector:
 
 
 @dataclass(frozen=True)
+class Lack:
+    """A work that is refused, by what the message says: where it is not any more, the table is old."""
+
+    work: Work
+    why: str
+    options: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Machine:
     """A row of the table. ``kind`` is what it is called in the field, ``told`` what its program says, ``before`` what was
     said of its kind in June, by the item of the list that asked for it."""
@@ -49,6 +58,9 @@ class Machine:
     options: tuple[str, ...] = ()
     """What the command is told besides."""
     but: str = ""
+    lacks: Lack | None = None
+    idle: str = ""
+    """Joints that stand still in its work, or whose way its program does not show."""
     """What of it does not work, where it works in part, and the command that shows it."""
     second: Bodies | None = field(default=None)
     """What its second channel leads, whose machine file and work are named so."""

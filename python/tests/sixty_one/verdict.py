@@ -63,59 +63,50 @@ CHANNELS = (("upper", 1.0), ("lower", -1.0))
 """What the files of two channels are called, and on which side of the centre each works."""
 
 
-def posted_together(machine: Machine, folder: Path) -> str | None:
-    """Both channels as a job; what was said if there are no programs."""
+@dataclass(frozen=True)
+class Program:
+    """What the command wrote: a text a channel, and its summary; or what it said."""
+
+    texts: tuple[str, ...]
+    summary: dict
+    said: str
+
+
+def run(machine: Machine, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """The command, with the libraries of robots' languages where they are asked for."""
+    plugins = ["--plugins", str(library(machine.dialect).parent)] if machine.dialect in ROBOTS else []
+    done = subprocess.run([command(), *plugins, *arguments], cwd=folder, capture_output=True, text=True)
+    if done.returncode not in (0, 1):
+        raise RuntimeError(f"{machine.name}: {done.stderr}")
+    return done
+
+
+def library(dialect: str) -> Path:
+    """The library of a dialect that is not built in: beside the command, or where tests have it."""
+    folder, name = Path(command()).parent, f"libpost_{dialect}.so"
+    return next((path for path in (folder / name, folder / "deps" / name) if path.is_file()), folder / name)
+
+
+def posted(machine: Machine, folder: Path) -> Program:
+    """The machine's work, posted."""
     folder.mkdir(parents=True, exist_ok=True)
+    if machine.second is None:
+        (folder / "part.cls").write_text(machine.work.text())
+        told = ["-m", str(HERE / f"{machine.name}.toml"), "part.cls", "-o", "part.nc", "--summary", "part.json"]
+        done = run(machine, folder, *told, "--tool-length", f"{machine.length:g}", *machine.options)
+        if done.returncode:
+            return Program((), {}, done.stderr)
+        return Program(((folder / "part.nc").read_text(),), json.loads((folder / "part.json").read_text()), done.stderr)
     lines = [f"tool_length = {machine.length:g}"]
     for name, side in CHANNELS:
         (folder / f"{name}.cls").write_text(passes.waiting(side).text())
         file = HERE / f"{machine.name}-{name}.toml"
-        lines += ["[[channel]]", f'machine = "{file}"', f'cl = "{name}.cls"', f'output = "{name}.nc"']
+        lines += ["[[channel]]", f"machine = '{file}'", f'cl = "{name}.cls"', f'output = "{name}.nc"']
     (folder / "part.job.toml").write_text("\n".join([*lines, ""]))
-    run = subprocess.run([command(), "part.job.toml"], cwd=folder, capture_output=True, text=True)
-    return None if run.returncode == 0 else run.stderr
-
-
-def both(machine: Machine, folder: Path) -> Verdict:
-    """The verdict on a machine of two channels: that of the worse, and that they wait for one another."""
-    said = posted_together(machine, folder)
-    if said is not None:
-        return refused(said)
-    found = []
-    for (name, side), bodies in zip(CHANNELS, (machine.bodies, machine.second or machine.bodies)):
-        text = (folder / f"{name}.nc").read_text()
-        if re.findall(r"^M1\d\d$", text, re.M) != ["M100", "M101"]:
-            raise Wrong(f"the {name} channel does not wait by M100 and M101")
-        own = replace(machine, bodies=bodies)
-        found.append(held(own, passes.waiting(side), placed(own, words.read(machine.dialect, text, {"X", "Z"}, False))))
-    worse = max(found, key=lambda one: one.tip)
-    return replace(worse, points=sum(one.points for one in found))
-
-
-def refused(said: str) -> Verdict:
-    """The first of the messages."""
-    first = re.search(r"error\[[a-z-]+\].*", said)
-    return Verdict("refused", first[0] if first else said)
-
-
-def posted(machine: Machine, work: Work, folder: Path) -> tuple[str | None, str]:
-    """The program, or none, and what the command said."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "part.cls").write_text(work.text())
-    plugins = ["--plugins", str(Path(command()).parent)] if machine.dialect in ROBOTS else []
-    run = subprocess.run(
-        [command(), *plugins, "-m", str(HERE / f"{machine.name}.toml"), "part.cls", "-o", "part.nc",
-         "--tool-length", f"{machine.length:g}", "--summary", "part.json", *machine.options],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-    )
-    said = run.stderr + run.stdout
-    if run.returncode == 1:
-        return None, said
-    if run.returncode != 0:
-        raise RuntimeError(f"{machine.name}: {said}")
-    return (folder / "part.nc").read_text(), said
+    done = run(machine, folder, "part.job.toml")
+    if done.returncode:
+        return Program((), {}, done.stderr)
+    return Program(tuple((folder / f"{name}.nc").read_text() for name, _ in CHANNELS), {}, done.stderr)
 
 
 @dataclass
@@ -305,21 +296,34 @@ def joined(machine: Machine, ways: list[Placed], summary: dict) -> float:
     return worst
 
 
-def judged(machine: Machine, folder: Path) -> Verdict:
-    """The verdict on a machine."""
+def judged(machine: Machine, program: Program) -> Verdict:
+    """The verdict on what was posted for a machine."""
+    if not program.texts:
+        first = re.search(r"error\[[a-z-]+\].*", program.said)
+        return Verdict("refused", first[0] if first else program.said)
     try:
-        if machine.second:
-            return replace(both(machine, folder), says=machine.after, why=machine.but)
-        text, said = posted(machine, machine.work, folder)
-        if text is None:
-            return refused(said)
-        letters = {joint.word for joint in machine.bodies.part + machine.bodies.tool}
-        found = words.read(machine.dialect, text, letters, machine.tips)
-        ways = placed(machine, found)
-        verdict = held(machine, machine.work, ways)
-        joints = joined(machine, ways, json.loads((folder / "part.json").read_text()))
+        found = both(machine, program) if machine.second else single(machine, program)
     except (Wrong, words.Unread) as why:
         return Verdict("wrong", str(why))
-    if joints > JOINTS:
-        return Verdict("wrong", f"a joint is off by {joints:.3f}")
-    return replace(verdict, says=machine.after, why=machine.but, joints=joints)
+    if found.joints > JOINTS:
+        return Verdict("wrong", f"a joint is off by {found.joints:.3f}")
+    return replace(found, says=machine.after, why=machine.but)
+
+
+def single(machine: Machine, program: Program) -> Verdict:
+    """Of a machine of one channel."""
+    letters = {joint.word for joint in machine.bodies.part + machine.bodies.tool}
+    ways = placed(machine, words.read(machine.dialect, program.texts[0], letters, machine.tips))
+    return replace(held(machine, machine.work, ways), joints=joined(machine, ways, program.summary))
+
+
+def both(machine: Machine, program: Program) -> Verdict:
+    """Of a machine of two channels: that of the worse, where they wait for one another."""
+    found = []
+    for (name, side), bodies, text in zip(CHANNELS, (machine.bodies, machine.second or machine.bodies), program.texts):
+        if re.findall(r"^M1\d\d$", text, re.M) != ["M100", "M101"]:
+            raise Wrong(f"the {name} channel does not wait by M100 and M101")
+        own = replace(machine, bodies=bodies)
+        found.append(held(own, passes.waiting(side), placed(own, words.read(machine.dialect, text, {"X", "Z"}, False))))
+    worse = max(found, key=lambda one: one.tip)
+    return replace(worse, points=sum(one.points for one in found))

@@ -1,4 +1,4 @@
-"""Sixty-one machines of the trade: each is what the table says of it (``sixty_one``), and the book's page is the table."""
+"""Sixty-one machines of the trade: each is what the table says of it (``sixty_one``), and the book has the table."""
 
 import sys
 from dataclasses import replace

@@ -10,7 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from sixty_one.table import ROWS, Machine
-from sixty_one.verdict import CHECKOUT, CHANNELS, HERE, Verdict, judged, posted
+from sixty_one.verdict import CHANNELS, CHECKOUT, HERE, Verdict, judged, posted
 
 PAGE = CHECKOUT / "docs/src/reference/sixty-one.md"
 HEAD = """<!-- Written by `PYTHONPATH=python/tests python3 -m sixty_one --table`: edit python/tests/sixty_one -->
@@ -33,7 +33,7 @@ feeds, the ways between cuts, what a control makes of a program.
 - **works**: all of it. **in part**: the CL file is met, and what is not is told below. **wrong**: a deviation beyond the \
 tolerance; a test fails then (`python/tests/test_sixty_one.py`). It fails as well when this page is not what comes out.
 - **June**: what was said of the kind when 61 other machines were tried in June 2026: 38 worked, 7 took a detour, 15 could \
-not be said, 1 was wrong. The list of them is not kept; "asked for" are the kinds that the report on them named as missing.
+not be said, 1 was wrong. The list of them is not kept: "worked" are the kinds of which the report on them says so, "missing" is what it named as such.
 - Deviations are the largest over all points and ways: of the tip from the CL file's way, mm; of tool axis and edge, \
 degrees; of joints from the summary, mm or degrees.
 
@@ -61,8 +61,8 @@ def row(number: int, machine: Machine, verdict: Verdict) -> str:
 def counted(verdicts: list[str]) -> str:
     """How many of each, in words."""
     counts = Counter(verdicts)
-    order = ("works", "in part", "refused", "wrong")
-    return ", ".join(f"{counts[says]} {says}" for says in order if counts[says])
+    order = {"works": "work", "in part": "work in part", "refused": "are refused", "wrong": "are wrong"}
+    return ", ".join(f"{counts[says]} {word}" for says, word in order.items() if counts[says])
 
 
 def verdicts() -> list[Verdict]:

@@ -31,7 +31,11 @@ class Work:
     edged: bool = False
     """The tool's edge goes along the travel."""
     signs: tuple[str, ...] = ()
-    """Records between the passes, of channels that wait."""
+    """Records before each pass: of channels that wait."""
+    operations: bool = False
+    """Each pass is an operation of its own."""
+    turned: tuple[float, ...] = ()
+    """By how much a table B is set before each pass, degrees: ROTABL, and the file's points stand in the turned frame."""
 
     def text(self) -> str:
         """The CL file."""
@@ -39,10 +43,21 @@ class Work:
         for number, one in enumerate(self.passes):
             # Points of APT's digits: what the file says is what is held against the program.
             lines += self.signs[number : number + 1]
-            lines += ["RAPID", goto(one.above, one.axes[0]), self.feed]
-            lines += [goto(tip, axis) for tip, axis in zip(one.tips, one.axes)]
-            lines += ["RAPID", goto(one.away, one.axes[-1])]
+            lines += [f"TOOL PATH/CUT_{number},TOOL,T1"] if self.operations else []
+            angle = self.turned[number] if self.turned else 0.0
+            lines += [f"ROTABL/BAXIS,{angle:.6f}"] if self.turned else []
+            back = about_y(-angle)
+            lines += ["RAPID", goto(back @ one.above, back @ one.axes[0]), self.feed]
+            lines += [goto(back @ tip, back @ axis) for tip, axis in zip(one.tips, one.axes)]
+            lines += ["RAPID", goto(back @ one.away, back @ one.axes[-1])]
+            lines += ["END-OF-PATH"] if self.operations else []
         return "\n".join([*lines, *self.tail, "FINI", ""])
+
+
+def about_y(degrees: float) -> Floats:
+    """A turn, right-handed."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
 
 def goto(tip: Floats, axis: Floats) -> str:
@@ -77,35 +92,47 @@ def flat(up: object = (0, 0, 1), size: float = 30.0) -> Work:
     return Work((cut(corners, three), cut(hole, three)))
 
 
-def dome(up: object = (0, 0, 1), least: float = 8.0, most: float = 35.0, radius: float = 40.0, turn: float = 250.0) -> Work:
-    """Over a dome the tool stands across its face and leans by ``least`` to ``most`` degrees while it goes around by ``turn``."""
+def dome(
+    up: object = (0, 0, 1), least: float = 8.0, most: float = 35.0, radius: float = 40.0, turn: float = 250.0
+) -> Work:
+    """Over a dome the tool stands across its face, leaning by ``least`` to ``most`` degrees, and goes around by ``turn``; on
+    a slope it leans another way."""
     one, two, three = frame(up)
     axes = []
     for share in np.linspace(0, 1, 15):
         lean, around = math.radians(least + (most - least) * share), math.radians(20 + turn * share)
-        axes.append(
-            math.sin(lean) * (math.cos(around) * one + math.sin(around) * two) + math.cos(lean) * three
-        )
+        axes.append(math.sin(lean) * (math.cos(around) * one + math.sin(around) * two) + math.cos(lean) * three)
     ways = np.array(axes)
     lowered = radius * (ways - three)
-    # A second pass, sloping, with a tool that leans another way.
-    slope = np.array([x * one + 0.3 * x * two + 0.1 * abs(x) * three for x in (-24.0, -8.0, 8.0, 24.0)])
-    lean = np.array([math.sin(a) * two + math.cos(a) * three for a in np.radians(np.linspace(-most / 2, -least, 4))])
-    return Work((cut(lowered, ways), cut(slope, lean)))
+    slope = np.array([x * one + (0.3 * x + 9) * two + 0.1 * abs(x) * three for x in (-24.0, -8.0, 8.0, 31.0)])
+    tipped = np.array([math.sin(a) * two + math.cos(a) * three for a in np.radians(np.linspace(-most / 2, -least, 4))])
+    return Work((cut(lowered, ways), cut(slope, tipped)))
 
 
-def around(line: object, start: object, degrees: float = 140.0, radius: float = 25.0, climb: float = 12.0) -> Work:
-    """A groove around ``line`` from the side of ``start``, the tool across it, and two radial holes."""
+def around(
+    line: object,
+    start: object,
+    degrees: float = 140.0,
+    radius: float = 25.0,
+    climb: float = 12.0,
+    beside: float = 5.0,
+    lean: float = 0.0,
+) -> Work:
+    """A groove around ``line`` from the side of ``start``, the tool across it or leaning along it by ``lean`` degrees, and two
+    holes that pass the line by ``beside``."""
     along, side = np.array(line, float), np.array(start, float)
     third = np.cross(along, side)
     angles = np.radians(np.linspace(0, degrees, 12))
     ways = np.array([math.cos(angle) * side + math.sin(angle) * third for angle in angles])
     groove = radius * ways + np.linspace(0, climb, 12)[:, None] * along
+    tipped = np.radians(np.linspace(lean / 2, lean, 12))[:, None]
+    leant = np.cos(tipped) * ways + np.sin(tipped) * along
     holes = []
     for angle in np.radians([35.0, 110.0]):
         way = math.cos(angle) * side + math.sin(angle) * third
-        holes.append(cut([(radius + depth) * way - 6 * along for depth in (2.0, -5.0, 2.0)], way))
-    return Work((cut(groove, ways), *holes))
+        aside = beside * np.cross(along, way) - 6 * along
+        holes.append(cut([(radius + depth) * way + aside for depth in (2.0, -5.0, 2.0)], way))
+    return Work((cut(groove, leant), *holes))
 
 
 def face() -> Work:
@@ -114,7 +141,8 @@ def face() -> Work:
     flat_ = [[18, y, -2] for y in (-14, -5, 5, 14)]
     slot = [[10, 4, -1], [-10, -4, -1]]
     hole = [[-9, 12, z] for z in (2, -8, 2)]
-    return Work((cut(flat_, up), cut(slot, up), cut(hole, up)))
+    edge = [[-20, -8, -3], [-6, -17, -3], [14, -15, -3]]
+    return Work((cut(flat_, up), cut(slot, up), cut(hole, up), cut(edge, up)), operations=True)
 
 
 def meridian() -> Work:
@@ -134,8 +162,15 @@ def turned(side: float = 1.0) -> Work:
     contour = [[side * x, 0, z] for x, z in ((20, 2), (20, -20), (22, -25), (25.1, -29.6), (30, -31), (36, -31))]
     end = [[side * x, 0, 0] for x in (22.0, 6.0)]
     up = np.array([0, 0, 1.0])
-    first = Pass(np.array(end, float), np.broadcast_to(up, (2, 3)), np.array([side * 24, 0, 5.0]), np.array([side * 20, 0, 5.0]))
-    second = Pass(np.array(contour, float), np.broadcast_to(up, (6, 3)), np.array([side * 20, 0, 4.0]), np.array([side * 40, 0, 4.0]))
+    first = Pass(
+        np.array(end, float), np.broadcast_to(up, (2, 3)), np.array([side * 24, 0, 5.0]), np.array([side * 20, 0, 5.0])
+    )
+    second = Pass(
+        np.array(contour, float),
+        np.broadcast_to(up, (6, 3)),
+        np.array([side * 20, 0, 4.0]),
+        np.array([side * 40, 0, 4.0]),
+    )
     return Work(
         (first, second),
         ("MODE/TURN", "SPINDL/180,SMM,MAXRPM,3000,CLW"),
@@ -198,7 +233,8 @@ def gaps(teeth: int = 8, radius: float = 30.0) -> Work:
     for number in range(0, teeth, 3):
         angle = 2 * math.pi * number / teeth
         way = np.array([math.cos(angle), math.sin(angle), 0.0])
-        passes.append(cut([radius * way + np.array([0, 0, z]) for z in (12.0, -12.0)], way))
+        aside = 1.5 * np.cross([0, 0, 1.0], way)
+        passes.append(cut([radius * way + aside + np.array([0, 0, z]) for z in (12.0, -12.0)], way))
     return Work(tuple(passes))
 
 
@@ -220,7 +256,9 @@ def beside() -> Work:
     for degrees in (0.0, 50.0, 200.0):
         way = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees)), 0.0])
         aside = np.cross([0, 0, 1.0], way)
-        passes.append(cut([22 * way + 9 * aside + np.array([0, 0, -15.0]) + depth * way for depth in (2.0, -4.0, 2.0)], way))
+        passes.append(
+            cut([22 * way + 9 * aside + np.array([0, 0, -15.0]) + depth * way for depth in (2.0, -4.0, 2.0)], way)
+        )
         passes.append(cut([21 * way + y * aside + np.array([0, 0, -30.0 - 0.2 * y]) for y in (-12.0, 12.0)], way))
     return Work(tuple(passes))
 
@@ -229,7 +267,9 @@ def level() -> Work:
     """An outline in one plane, of a wire that stands upright."""
     points = [[30 * math.cos(a), 22 * math.sin(a), 0.0] for a in np.radians(np.linspace(0, 340, 18))]
     tips = np.array(points)
-    return Work((Pass(tips, np.broadcast_to([0, 0, 1.0], tips.shape), np.array([12.0, 3.0, 0.0]), np.array([12.0, 3.0, 0.0])),))
+    return Work(
+        (Pass(tips, np.broadcast_to([0, 0, 1.0], tips.shape), np.array([12.0, 3.0, 0.0]), np.array([12.0, 3.0, 0.0])),)
+    )
 
 
 def sawn() -> Work:
@@ -246,8 +286,29 @@ def sawn() -> Work:
 def walls() -> Work:
     """Two layers of a printed ring."""
     rounds = [[25 * math.cos(a), 18 * math.sin(a), 0.4] for a in np.radians(np.linspace(0, 350, 25))]
-    second = [[22 * math.cos(a), 16 * math.sin(a), 0.8 + 0.02 * n] for n, a in enumerate(np.radians(np.linspace(0, 330, 19)))]
+    second = [
+        [22 * math.cos(a), 16 * math.sin(a), 0.8 + 0.02 * n] for n, a in enumerate(np.radians(np.linspace(0, 330, 19)))
+    ]
     return printed(Work((cut(rounds, (0, 0, 1), 5.0), cut(second, (0, 0, 1), 5.0))))
+
+
+def along_rail(reach: float) -> Work:
+    """A way along Y that is longer than an arm, the tool leaning to both sides."""
+    share = np.linspace(-1, 1, 33)
+    points = np.stack([30 * np.cos(3 * share), reach * share, 10 * share], axis=1)
+    lean = np.radians(12 * np.sin(4 * share))
+    axes = np.stack([np.sin(lean) * 0.5, np.sin(lean), np.ones_like(lean)], axis=1)
+    return Work((cut(points, axes, 40.0),))
+
+
+def bowl(radius: float, lean: float, degrees: float) -> Work:
+    """Around a ring, the tool leaning outwards."""
+    points, axes = [], []
+    for angle in np.radians(np.linspace(150, 150 + degrees, 41)):
+        way = np.array([math.cos(angle), math.sin(angle), 0.0])
+        points.append(radius * way)
+        axes.append(math.sin(math.radians(lean)) * way + np.array([0, 0, math.cos(math.radians(lean))]))
+    return Work((cut(points, axes, 40.0),))
 
 
 def waiting(side: float) -> Work:

@@ -34,7 +34,7 @@ def leaned(axis: Floats) -> Floats:
     b = math.atan2(axis[0], axis[2])
     about_x = np.array([[1, 0, 0], [0, math.cos(a), -math.sin(a)], [0, math.sin(a), math.cos(a)]])
     about_y = np.array([[math.cos(b), 0, math.sin(b)], [0, 1, 0], [-math.sin(b), 0, math.cos(b)]])
-    return about_y @ about_x
+    return np.asarray(about_y @ about_x)
 
 
 def ring(radius: float, degrees: float) -> Floats:
@@ -123,7 +123,9 @@ def sprint(platform: float, carriages: float, rod: float) -> tuple[tuple[str, La
             arms = [turn @ ring(platform, one) for one in legs]
             sides = [ring(1.0, one + 90.0)[:2] for one in legs]
             # Where the middle goes so that each joint stays in its plane.
-            aside, *_ = np.linalg.lstsq(np.array(sides), [-arm[:2] @ side for arm, side in zip(arms, sides)], rcond=None)
+            aside, *_ = np.linalg.lstsq(
+                np.array(sides), [-arm[:2] @ side for arm, side in zip(arms, sides)], rcond=None
+            )
             place = legs.index(degrees)
             joint = arms[place] + np.append(aside, middle[2])
             out = carriages - float(joint @ ring(1.0, degrees))

@@ -9,11 +9,12 @@ import re
 import subprocess
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from sixty_one import passes, words
-from sixty_one.kinematics import Floats, Pose
+from sixty_one.kinematics import Floats
 from sixty_one.passes import Pass, Work
 from sixty_one.table import Machine
 from sixty_one.words import UNKNOWN, Block
@@ -24,7 +25,7 @@ ROBOTS = {"krl", "rapid", "urscript"}
 SHARES = np.linspace(0, 1, 9)
 DIGITS = 2e-3
 """What the digits of the words may leave beside the tolerance, mm."""
-JOINTS = 0.05
+JOINTS = 0.1
 """How far a joint may be from where the summary has it, mm or degrees: digits of words, seen from a pivot, and nine places on
 each way where a slide goes out and back again."""
 DEGREES = 5e-3
@@ -54,9 +55,9 @@ class Wrong(Exception):
     """The program is not what the CL file has."""
 
 
-def angle(one: Floats, other: Floats) -> float:
-    """Between two unit vectors, degrees."""
-    return math.degrees(2 * math.asin(min(1.0, float(np.linalg.norm(one - other)) / 2)))
+def angle(one: Floats, other: Floats) -> Floats:
+    """Between unit vectors, degrees."""
+    return np.asarray(np.degrees(2 * np.arcsin(np.minimum(1.0, np.linalg.norm(one - other, axis=-1) / 2))))
 
 
 CHANNELS = (("upper", 1.0), ("lower", -1.0))
@@ -68,14 +69,14 @@ class Program:
     """What the command wrote: a text a channel, and its summary; or what it said."""
 
     texts: tuple[str, ...]
-    summary: dict
+    summary: dict[str, Any]
     said: str
 
 
 def run(machine: Machine, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """The command, with the libraries of robots' languages where they are asked for."""
     plugins = ["--plugins", str(library(machine.dialect).parent)] if machine.dialect in ROBOTS else []
-    done = subprocess.run([command(), *plugins, *arguments], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run([command(), *plugins, *arguments], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 1):
         raise RuntimeError(f"{machine.name}: {done.stderr}")
     return done
@@ -110,72 +111,77 @@ def posted(machine: Machine, folder: Path) -> Program:
 
 
 @dataclass
-class Placed:
-    """A block with the poses on its way: the start is where the block before left off."""
+class Way:
+    """A block with the poses on its way, a row at each share, and the joints; the start is where the block before left off."""
 
     block: Block
-    poses: list[Pose]
-    values: list[dict[str, float]]
+    tips: Floats
+    axes: Floats
+    edges: Floats
+    values: dict[str, Floats]
 
 
-def mixed(one: Floats, other: Floats, share: float) -> Floats:
+def mixed(one: Floats, other: Floats) -> Floats:
     """Between two directions, on the great circle."""
-    whole = math.radians(angle(one, other))
+    whole = math.radians(float(angle(one, other)))
     if whole < 1e-9:
-        return one
-    return (math.sin((1 - share) * whole) * one + math.sin(share * whole) * other) / math.sin(whole)
+        return np.broadcast_to(other, (len(SHARES), 3))
+    rows = np.outer(np.sin((1 - SHARES) * whole), one) + np.outer(np.sin(SHARES * whole), other)
+    return rows / math.sin(whole)
 
 
-def between(machine: Machine, zero: dict[str, float], start: Block | None, end: Block, share: float) -> tuple[Pose, dict[str, float]]:
-    """The pose on the way to the end of a block."""
-    bodies, start = machine.bodies, start or end
-    told = {
-        name: start.words.get(name, value) + share * (value - start.words.get(name, value)) for name, value in end.words.items()
-    }
-    if end.frame is not None:
-        # A robot's straight move: the tip goes straight. Between two, the tool's own direction is on the great circle.
-        first = start.frame or end.frame
-        tips = [np.array(one[0]) - np.array(bodies.origin) for one in (first, end.frame)]
-        ways = [-np.array(one[1])[:, 2] for one in (first, end.frame)]
-        across = np.array(end.frame[1])[:, 0]
-        return Pose(tips[0] + share * (tips[1] - tips[0]), mixed(ways[0], ways[1], share), across), told
-    values = bodies.values({name: value for name, value in told.items() if not name.endswith("3")})
-    if not end.led:
-        for name, value in zero.items():
-            values[name] += value
-    pose = bodies.pose(values, machine.length)
-    if end.led:
-        tip = np.array([told[name] for name in "XYZ"])
-        axis = pose.axis
-        if machine.vectors:
-            axis = mixed(*(np.array([one.words[name] for name in ("A3", "B3", "C3")]) for one in (start, end)), share)
-        return Pose(tip, axis, pose.edge), values
-    if end.mode == "face":
-        # Right-angled coordinates of the part, X as the lathe counts it.
-        across = told["Y"] if "Y" in told else told["C"]
-        return replace(pose, tip=np.array([told["X"] / bodies.factors.get("X", 1.0), across, pose.tip[2]])), values
-    return pose, values
+def told(start: Block, end: Block, name: str) -> Floats:
+    """A word on the way."""
+    first, last = start.words.get(name, math.nan), end.words.get(name, math.nan)
+    return (last if math.isnan(first) else first) * (1 - SHARES) + last * SHARES
 
 
-def placed(machine: Machine, found: list[Block]) -> list[Placed]:
-    """The blocks with their poses; those whose words are not all known have none."""
-    zero = machine.bodies.at_origin(machine.length)
-    ways, last = [], None
-    needed = set(zero) | {joint.word for joint in machine.bodies.part + machine.bodies.tool}
-    if machine.vectors:
-        needed = {"X", "Y", "Z", "A3", "B3", "C3"}
+def placed(machine: Machine, found: list[Block]) -> list[Way]:
+    """The blocks whose words are all known, with their poses."""
+    bodies, zero = machine.bodies, machine.bodies.at_origin(machine.length)
+    joints = [joint.word for joint in bodies.part + bodies.tool]
+    vector = ["A3", "B3", "C3"] if machine.vectors else []
+    pairs: list[tuple[Block, Block]] = []
+    last = None
     for block in found:
-        missing = UNKNOWN if machine.vectors else 0.0
-        known = all(not math.isnan(block.words.get(name, missing)) for name in needed - left_out(block))
-        if not known:
+        needed = {"X", "Y", "Z", *vector} if vector else {*zero, *joints} - left_out(block)
+        if any(math.isnan(block.words.get(name, UNKNOWN if vector else 0.0)) for name in needed):
             if block.cuts:
                 raise Wrong(f"line {block.line} cuts, and not all words are known: {block.words}")
             last = None
             continue
-        shares = SHARES if last is not None and last.led == block.led and last.mode == block.mode else SHARES[-1:]
-        both = [between(machine, zero, last, block, share) for share in shares]
-        ways.append(Placed(block, [pose for pose, _ in both], [values for _, values in both]))
+        same = last is not None and (last.led, last.mode) == (block.led, block.mode)
+        pairs.append((last if same and last else block, block))
         last = block
+    count = len(pairs) * len(SHARES)
+    names = {name for _, end in pairs for name in end.words}
+    words_ = {name: np.concatenate([told(*pair, name) for pair in pairs]) for name in names}
+    known = {name: np.nan_to_num(words_[name]) for name in joints if name in words_}
+    values = bodies.values(known, count)
+    led = np.repeat([end.led for _, end in pairs], len(SHARES))
+    for name, value in zero.items():
+        values[name] = values[name] + np.where(led, 0.0, value)
+    poses = bodies.poses(values, machine.length)
+    ways = []
+    for number, (start, end) in enumerate(pairs):
+        rows = slice(number * len(SHARES), (number + 1) * len(SHARES))
+        tips, axes, edges = poses.tips[rows], poses.axes[rows], poses.edges[rows]
+        if end.led:
+            tips = np.stack([words_[name][rows] for name in "XYZ"], axis=1)
+            if vector:
+                axes = mixed(*(np.array([one.words[name] for name in vector]) for one in (start, end)))
+        elif end.mode == "face":
+            # Right-angled coordinates of the part, X as the lathe counts it.
+            across = words_["Y" if "Y" in end.words else "C"][rows]
+            tips = np.stack([words_["X"][rows] / bodies.factors.get("X", 1.0), across, tips[:, 2]], axis=1)
+        elif end.frame is not None:
+            # A robot's straight move: the tip goes straight, and the tool's own direction turns on the great circle.
+            ends = [one or end.frame for one in (start.frame, end.frame)]
+            first, goal = (np.array(one[0]) - np.array(bodies.origin) for one in ends)
+            tips = first + SHARES[:, None] * (goal - first)
+            axes = mixed(*(-np.array(one[1])[:, 2] for one in ends))
+        own = {name: value[rows] for name, value in values.items()}
+        ways.append(Way(end, tips, axes, edges, own))
     return ways
 
 
@@ -184,115 +190,126 @@ def left_out(block: Block) -> set[str]:
     return {"C"} if block.mode == "face" and "Y" in block.words else set()
 
 
-def aside(pose: Floats, start: Floats, end: Floats) -> float:
-    """From a straight between two points."""
+def aside(tips: Floats, start: Floats, end: Floats) -> float:
+    """The farthest of the points from the straight between two."""
     way = end - start
-    share = min(1.0, max(0.0, float((pose - start) @ way) / max(float(way @ way), 1e-12)))
-    return float(np.linalg.norm(pose - start - share * way))
+    share = np.clip((tips - start) @ way / max(float(way @ way), 1e-12), 0, 1)
+    return float(np.linalg.norm(tips - start - share[:, None] * way, axis=1).max())
 
 
-def held(machine: Machine, work: Work, ways: list[Placed]) -> Verdict:
+def held(machine: Machine, work: Work, ways: list[Way]) -> Verdict:
     """All points of all passes, in order, and the ways between them."""
     cuts = [one for one in ways if one.block.cuts]
+    if not cuts:
+        raise Wrong("nothing cuts")
+    tips, axes = (np.stack([getattr(one, name)[-1] for one in cuts]) for name in ("tips", "axes"))
     tip, lean, edge, at, points = 0.0, 0.0, 0.0, 0, 0
     room, most = machine.tolerance + DIGITS, machine.lean + DEGREES
     for one in work.passes:
-        for place, goal, way in zip(range(len(one.tips)), one.tips, one.axes):
+        for place, (goal, way) in enumerate(zip(one.tips, one.axes)):
             start = one.tips[place - 1] if place else one.above
-            for number in range(at, len(cuts)):
-                end = cuts[number].poses[-1]
-                if np.linalg.norm(end.tip - goal) <= room and angle(end.axis, way) <= most:
-                    break
-            else:
-                near = min(cuts[at:] or cuts, key=lambda c: float(np.linalg.norm(c.poses[-1].tip - goal)), default=None)
-                told = f", nearest line {near.block.line} at {near.poses[-1].tip.round(3)} {near.poses[-1].axis.round(4)}" if near else ""
-                raise Wrong(f"point {points + 1} at {goal.round(3)} {way.round(4)} is not met{told}")
-            tip = max(tip, float(np.linalg.norm(end.tip - goal)))
-            lean = max(lean, angle(end.axis, way))
+            off, leant = np.linalg.norm(tips - goal, axis=1), angle(axes, way)
+            met = np.flatnonzero((off[at:] <= room) & (leant[at:] <= most))
+            if not len(met):
+                near = at + int(np.argmin(off[at:])) if at < len(cuts) else -1
+                raise Wrong(
+                    f"point {points + 1} at {goal.round(3)} {way.round(4)} is not met, nearest line {cuts[near].block.line}"
+                    f" at {tips[near].round(3)} {axes[near].round(4)}"
+                )
+            number = at + int(met[0])
+            tip, lean = max(tip, float(off[number])), max(lean, float(leant[number]))
             own = cuts[at : number + 1]
             if not place:
                 # What comes before the way down from above are rapids that are written as feed moves.
-                starts = [k for k, done in enumerate(own) if np.linalg.norm(done.poses[0].tip - start) <= 0.5]
+                starts = [k for k, done in enumerate(own) if np.linalg.norm(done.tips[0] - start) <= 0.5]
                 own = own[starts[-1] :] if starts else own[-1:]
             for done in own:
-                for pose in done.poses:
-                    off = aside(pose.tip, start, goal)
-                    if off > room:
-                        raise Wrong(f"line {done.block.line} strays by {off:.4f} mm from the way to {goal.round(3)}")
-                    tip = max(tip, off)
-                    if place:
-                        edge = max(edge, heading(work, one, place, pose))
+                strays = aside(done.tips, start, goal)
+                if strays > room:
+                    raise Wrong(f"line {done.block.line} strays by {strays:.4f} mm from the way to {goal.round(3)}")
+                tilt = tilted(done.axes, one.axes[place - 1], way) if place else 0.0
+                if tilt > most:
+                    raise Wrong(f"line {done.block.line}: the tool leaves its plane by {tilt:.4f} degrees")
+                tip, lean = max(tip, strays), max(lean, tilt)
+                if place and work.edged:
+                    edge = max(edge, headed(one, place, done))
             at, points = number + 1, points + 1
-    if work.edged and edge > most:
+    if edge > most:
         raise Wrong(f"the edge stands {edge:.3f} degrees beside the way")
     return Verdict("works", "", tip, lean, edge if work.edged else None, 0.0, points)
 
 
-def heading(work: Work, one: Pass, place: int, pose: Pose) -> float:
+def tilted(axes: Floats, first: Floats, last: Floats) -> float:
+    """By how much the tool leaves the plane that it turns in, degrees."""
+    normal = np.cross(first, last)
+    size = float(np.linalg.norm(normal))
+    if size < 1e-4:
+        return float(angle(axes, last).max())
+    return float(np.degrees(np.arcsin(np.clip(np.abs(axes @ normal) / size, 0, 1))).max())
+
+
+def headed(one: Pass, place: int, done: Way) -> float:
     """By how much the edge is beside the travel, across the tool, degrees; corners may be taken on the spot."""
-    if not work.edged:
-        return 0.0
-    way = one.tips[place] - one.tips[place - 1]
-    way = way - (way @ pose.axis) * pose.axis
-    off = angle(way / np.linalg.norm(way), pose.edge)
+
+    def across(number: int) -> Floats:
+        way = one.tips[number] - one.tips[number - 1]
+        flat = way - (done.axes @ way)[:, None] * done.axes
+        return np.asarray(flat / np.linalg.norm(flat, axis=1)[:, None])
+
+    way = across(place)
     # A way of chords is headed along a curve: as far as a chord turns to the next.
-    turn = 0.0
-    for other in (place - 1, place + 1):
-        if 1 <= other < len(one.tips):
-            more = one.tips[other] - one.tips[other - 1]
-            more = more - (more @ pose.axis) * pose.axis
-            turn = max(turn, angle(way / np.linalg.norm(way), more / np.linalg.norm(more)))
-    return max(0.0, off - turn)
+    others = [other for other in (place - 1, place + 1) if 1 <= other < len(one.tips)]
+    turn = max([float(angle(way, across(other)).max()) for other in others], default=0.0)
+    return max(0.0, float(angle(way, done.edges).max()) - turn)
 
 
-def led_to(machine: Machine, pose: Pose, values: dict[str, float]) -> dict[str, float]:
-    """Joints of a tip that the control keeps: its slides bring the tip there, the others being where they are told."""
-    bodies = machine.bodies
-    names = [joint.word for joint in bodies.part + bodies.tool if not joint.turns]
-    rest = {**values, **dict.fromkeys(names, 0.0)}
-    start = bodies.pose(rest, machine.length).tip
-    ways = np.stack([bodies.pose({**rest, name: 1.0}, machine.length).tip - start for name in names], axis=1)
-    found, *_ = np.linalg.lstsq(ways, pose.tip - start, rcond=None)
-    return {**values, **{name: float(value) for name, value in zip(names, found)}}
-
-
-def joined(machine: Machine, ways: list[Placed], summary: dict) -> float:
+def joined(machine: Machine, ways: list[Way], summary: dict[str, Any]) -> float:
     """How far the summary's ranges of axes and drives are from where bodies and published formulas have them, mm or degrees,
     from the first pass to the last. A range that is wider at one end has the way to the part and from it: the nearer end
     counts, and whatever lies outside."""
-    found: dict[str, list[float]] = {}
+    bodies = machine.bodies
     first, last = machine.work.passes[0].above, machine.work.passes[-1].away
-    begins = [k for k, way in enumerate(ways) if np.linalg.norm(way.poses[-1].tip - first) < 0.5]
-    ends_ = [k for k, way in enumerate(ways) if np.linalg.norm(way.poses[-1].tip - last) < 0.5]
+    begins = [k for k, way in enumerate(ways) if np.linalg.norm(way.tips[-1] - first) < 0.5]
+    ends = [k for k, way in enumerate(ways) if np.linalg.norm(way.tips[-1] - last) < 0.5]
+    if not begins or not ends:
+        raise Wrong("the way to the first pass or from the last does not stand in the program")
     # Words of a mode and poses are no joints: of these programs not all of the way is among what is found here.
-    modes = any(way.block.mode or way.block.frame for way in ways)
-    for number, way in enumerate(ways[begins[0] : ends_[-1] + 1]):
-        if way.block.frame is not None:
-            continue
-        for pose, values in list(zip(way.poses, way.values))[0 if number else -1 :]:
-            if way.block.led and not machine.vectors:
-                values = led_to(machine, pose, values)
-            if not machine.vectors and not way.block.mode:
-                for joint in machine.bodies.part + machine.bodies.tool:
-                    found.setdefault(joint.word, []).append(values[joint.word] + joint.shown)
-            middle = np.array(machine.bodies.origin) + pose.tip + (machine.length - machine.bodies.nose[2]) * pose.axis
-            for name, law in machine.drives:
-                found.setdefault("drive " + name, []).append(law(middle, pose.axis))
-    told = {one["name"]: one for one in summary["axes"]}
-    told |= {"drive " + one["name"]: one for one in summary.get("drives") or []}
-    turning = {joint.word for joint in machine.bodies.part + machine.bodies.tool if joint.turns}
-    if "W" in found:
+    # An arm's joints leave the part on ways of their own.
+    partly = bodies.absolute or any(way.block.mode or way.block.frame for way in ways)
+    own = [way for way in ways[begins[0] + 1 : ends[-1] + 1] if way.block.frame is None and not way.block.mode]
+    if machine.work.operations:
+        # Between operations the tool is retracted, of which the summary says nothing.
+        own, partly = [way for way in own if way.block.cuts], True
+    if not own:
+        return 0.0
+    tips, axes = (np.concatenate([getattr(way, name) for way in own]) for name in ("tips", "axes"))
+    found: dict[str, Floats] = {}
+    if not machine.vectors:
+        values = {name: np.concatenate([way.values[name] for way in own]) for name in own[0].values}
+        if machine.tips:
+            names = [joint.word for joint in bodies.part + bodies.tool if not joint.turns]
+            values = bodies.slides_to(tips, values, machine.length, names)
+        found = {joint.word: values[joint.word] + joint.shown for joint in bodies.part + bodies.tool}
+    if machine.room is not None and float(machine.room(found).min()) < -DIGITS:
+        raise Wrong(f"a limit is passed by {-float(machine.room(found).min()):.3f} mm")
+    if "W" in found and "Z" in found and not any(joint.word == "W" and joint.turns for joint in bodies.tool):
         # Z and a quill share their way, and where each is counted from is the builder's.
-        found = {name: values for name, values in found.items() if name not in ("Z", "W") or name in turning}
+        del found["W"], found["Z"]
+    middles = np.array(bodies.origin) + tips + (machine.length - bodies.nose[2]) * axes
+    some = np.arange(len(tips)) % len(SHARES) % 4 == 0
+    for name, law in machine.drives:
+        found["drive " + name] = np.array([law(*pose) for pose in zip(middles[some], axes[some])])
+    ranges = {one["name"]: one for one in summary["axes"]}
+    ranges |= {"drive " + one["name"]: one for one in summary.get("drives") or []}
+    turning = {joint.word for joint in bodies.part + bodies.tool if joint.turns}
     worst = 0.0
-    for name, values_ in found.items():
-        if name in told:
-            low, high = told[name]["min"], told[name]["max"]
-            # Whole turns are one place.
-            shift = round((low + high - min(values_) - max(values_)) / 720) * 360 if name in turning else 0
-            ends = min(values_) + shift - low, high - max(values_) - shift
-            nearer = 0.0 if modes else min(abs(ends[0]), abs(ends[1]))
-            worst = max(worst, -ends[0], -ends[1], nearer)
+    for name in found.keys() & ranges.keys():
+        low, high = ranges[name]["min"], ranges[name]["max"]
+        least, most = float(found[name].min()), float(found[name].max())
+        # Whole turns are one place.
+        shift = round((low + high - least - most) / 720) * 360 if name in turning else 0
+        inside = least + shift - low, high - most - shift
+        worst = max(worst, -min(inside), 0.0 if partly else min(abs(inside[0]), abs(inside[1])))
     return worst
 
 
@@ -313,15 +330,29 @@ def judged(machine: Machine, program: Program) -> Verdict:
 def single(machine: Machine, program: Program) -> Verdict:
     """Of a machine of one channel."""
     letters = {joint.word for joint in machine.bodies.part + machine.bodies.tool}
-    ways = placed(machine, words.read(machine.dialect, program.texts[0], letters, machine.tips))
+    found = words.read(machine.dialect, program.texts[0], letters, machine.tips, machine.signed)
+    if machine.vectors:
+        pointed(machine, found)
+    ways = placed(machine, found)
     return replace(held(machine, machine.work, ways), joints=joined(machine, ways, program.summary))
+
+
+def pointed(machine: Machine, found: list[Block]) -> None:
+    """Before the control is told vectors its axes are turned to where the first of them points."""
+    turned = [block for block in found if not block.led and not math.isnan(block.words.get("A", UNKNOWN))]
+    if not turned:
+        raise Wrong("no axis is turned before the first vector")
+    values = machine.bodies.values({name: np.array([turned[0].words[name]]) for name in "AC"}, 1)
+    axis = machine.bodies.poses(values, machine.length).axes[0]
+    if angle(axis, machine.work.passes[0].axes[0]) > machine.lean:
+        raise Wrong(f"the axes are turned to {axis.round(4)} before the first vector")
 
 
 def both(machine: Machine, program: Program) -> Verdict:
     """Of a machine of two channels: that of the worse, where they wait for one another."""
     found = []
     for (name, side), bodies, text in zip(CHANNELS, (machine.bodies, machine.second or machine.bodies), program.texts):
-        if re.findall(r"^M1\d\d$", text, re.M) != ["M100", "M101"]:
+        if re.findall(r"^M1\d\d$", text, re.MULTILINE) != ["M100", "M101"]:
             raise Wrong(f"the {name} channel does not wait by M100 and M101")
         own = replace(machine, bodies=bodies)
         found.append(held(own, passes.waiting(side), placed(own, words.read(machine.dialect, text, {"X", "Z"}, False))))

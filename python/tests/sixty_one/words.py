@@ -58,8 +58,8 @@ def code(letter: str, value: str) -> str:
     return f"{letter}{number:g}"
 
 
-def blocks(text: str, letters: set[str], tips: bool, siemens: bool) -> Iterator[Block]:
-    """Of a program in G-code. ``letters`` are those that move something; ``tips``: X Y Z are of the tip while the control
+def blocks(text: str, letters: set[str], tips: bool, siemens: bool, signed: str) -> Iterator[Block]:
+    """Of a program in G-code. ``signed`` letters turn to their amount, the way that their sign says. ``letters`` are those that move something; ``tips``: X Y Z are of the tip while the control
     keeps it."""
     at: dict[str, float] = dict.fromkeys(letters, UNKNOWN)
     cuts, led, mode, machine = False, False, "", False
@@ -71,12 +71,14 @@ def blocks(text: str, letters: set[str], tips: bool, siemens: bool) -> Iterator[
         for name, on in (("#MCS ON", True), ("#MCS OFF", False)):
             if block == name:
                 machine = on
-        if re.match(r"(MSG|STOPRE|#CS OFF$|LIMS|CYCLE800|ORI|DIAM|TRANS$|SET_|M140|M104|M190|M109|VELOCITY|BED_|G161)", block):
+        if re.match(
+            r"(MSG|STOPRE|#CS OFF$|LIMS|CYCLE800|ORI|DIAM|TRANS$|SET_|M140|M104|M190|M109|VELOCITY|BED_|G161)", block
+        ):
             continue
         if block in ("TRANSMIT", "G12.1", "G112") or block.startswith(("TRACYL", "G7.1 C", "G107 C")):
-            value = re.search(r"C([-\d.]+)", block)
+            turn = re.search(r"C([-\d.]+)", block)
             mode = "face" if block in ("TRANSMIT", "G12.1", "G112") else "mantle"
-            if value and float(value[1]) == 0:
+            if turn and float(turn[1]) == 0:
                 mode = ""
             if mode == "face":
                 at |= {letter: UNKNOWN for letter in "XYC" if letter in letters or letter == "Y"}
@@ -94,13 +96,15 @@ def blocks(text: str, letters: set[str], tips: bool, siemens: bool) -> Iterator[
         here = machine or "SUPA" in block or block.startswith("#MCS G")
         codes, found, rest = set(), {}, words
         for match in WORD.finditer(words):
-            letter, vector, way, value = match.groups()
+            letter, vector, way, value = match[1], match[2], match[3], str(match[4])
             rest = rest.replace(match[0], "", 1)
             if letter in "GM":
                 codes.add(code(letter, value))
             elif vector and vector.startswith("3"):
                 found[letter + "3"] = float(value)
             elif letter in letters or (mode == "face" and letter == "Y"):
+                if letter in signed:
+                    way, value = "ACN(" if value.startswith("-") else "ACP(", value.lstrip("-")
                 found[letter] = reached(at[letter], float(value), way)
             elif letter not in "FSTDHLPEQRN":
                 raise Unread(f"{line}: {raw}")
@@ -190,10 +194,16 @@ def krl(text: str) -> Iterator[Block]:
         a, b, c = (math.radians(pose[name]) for name in "ABC")
         # Turned about Z by A, about the new Y by B, about the new X by C.
         rows = [
-            [math.cos(a) * math.cos(b), math.cos(a) * math.sin(b) * math.sin(c) - math.sin(a) * math.cos(c),
-             math.cos(a) * math.sin(b) * math.cos(c) + math.sin(a) * math.sin(c)],
-            [math.sin(a) * math.cos(b), math.sin(a) * math.sin(b) * math.sin(c) + math.cos(a) * math.cos(c),
-             math.sin(a) * math.sin(b) * math.cos(c) - math.cos(a) * math.sin(c)],
+            [
+                math.cos(a) * math.cos(b),
+                math.cos(a) * math.sin(b) * math.sin(c) - math.sin(a) * math.cos(c),
+                math.cos(a) * math.sin(b) * math.cos(c) + math.sin(a) * math.sin(c),
+            ],
+            [
+                math.sin(a) * math.cos(b),
+                math.sin(a) * math.sin(b) * math.sin(c) + math.cos(a) * math.cos(c),
+                math.sin(a) * math.sin(b) * math.cos(c) - math.cos(a) * math.sin(c),
+            ],
             [-math.sin(b), math.cos(b) * math.sin(c), math.cos(b) * math.cos(c)],
         ]
         yield Block(line, True, dict(at), False, "", ([pose[name] for name in "XYZ"], rows))
@@ -210,7 +220,7 @@ def urscript(text: str) -> Iterator[Block]:
             yield Block(line, bool(re.search(r"\bt\s*=", move[2])), at)
 
 
-def read(dialect: str, text: str, letters: set[str], tips: bool) -> list[Block]:
+def read(dialect: str, text: str, letters: set[str], tips: bool, signed: str = "") -> list[Block]:
     """The blocks of a program."""
     if dialect == "heidenhain":
         return list(klartext(text, letters, tips))
@@ -220,4 +230,4 @@ def read(dialect: str, text: str, letters: set[str], tips: bool) -> list[Block]:
         return list(krl(text))
     if dialect == "urscript":
         return list(urscript(text))
-    return list(blocks(text, letters, tips, dialect == "siemens"))
+    return list(blocks(text, letters, tips, dialect == "siemens", signed))

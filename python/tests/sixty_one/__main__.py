@@ -1,5 +1,5 @@
-"""``PYTHONPATH=python/tests python3 -m sixty_one``: posts the machines and prints the table; ``--table`` writes it into the
-book. The command is POST_COMMAND, or that of target/debug."""
+"""``PYTHONPATH=python/tests python3 -m sixty_one``: posts the machines and prints the table; ``--table`` writes it
+into the book. The command is POST_COMMAND, or that of target/debug."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Bodies that move one another: a product of matrices from the bed to the part, another from the bed to the tool.
 
-Nothing here is told which way "the tool as seen from the part" goes. A joint is told as who stands beside the machine sees
-it: what it carries slides or turns that way when its word counts up. So a sign that is wrong in a machine file shows.
+Nothing here is told which way "the tool as seen from the part" goes. A joint is told as who stands beside the machine
+sees it: what it carries slides or turns that way when its word counts up. So a sign that is wrong in a machine file
+shows.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint and the word that leads it: mm or degrees. ``way`` is how what it carries goes as the word counts up, in the
-    frame of the bed with all joints at rest; ``shown`` is the word at rest."""
+    """A joint and the word that leads it: mm or degrees. ``way`` is how what it carries goes as the word counts up,
+    in the frame of the bed with all joints at rest; ``shown`` is the word at rest."""
 
     word: str
     turns: bool
@@ -58,7 +59,8 @@ def turns(word: str, way: Vector, point: Vector = (0.0, 0.0, 0.0), shown: float 
 
 @dataclass(frozen=True)
 class Poses:
-    """Where the tool stands in the part's frame, a row each: its tip, its axis from the tip to the holder, and its edge."""
+    """Where the tool stands in the part's frame, a row each: its tip, its axis from the tip to the holder, and its
+    edge."""
 
     tips: Floats
     axes: Floats
@@ -81,8 +83,8 @@ class Bodies:
     less: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     """Words that are their joint less a multiple of another: of coupled arms and of wrists with bevel gears."""
     errors: Mapping[str, tuple[tuple[float, ...], ...]] = field(default_factory=dict)
-    """Of slides of a machine that turns nothing: where one stands, and how far the tool is from where it should be over the
-    part there, along X, Y and Z."""
+    """Of slides of a machine that turns nothing: where one stands, and how far the tool is from where it should be
+    over the part there, along X, Y and Z."""
     absolute: bool = False
     """Words of slides are those of the machine, not from where the part is."""
 

@@ -17,23 +17,25 @@ HEAD = """<!-- Written by `PYTHONPATH=python/tests python3 -m sixty_one --table`
 
 # Sixty-one machines
 
-How far "any machine in a TOML file" goes. {count} machines of the trade were written from what their data sheets say: a \
-machine file each, `python/tests/sixty_one/NAME.toml`, and beside it, written apart, what who stands at the machine sees \
-when a word counts up (`table.py`: tables that turn, heads that swing, by directions and points). Data sheets are quoted \
-from memory, as each file says; what no sheet has (where lines cross, how far a pivot is from the nose) is assumed. None of \
-these files is fit to run a machine with.
+How far "any machine in a TOML file" goes. {count} machines of the trade were written from what their data sheets \
+say: a machine file each, `python/tests/sixty_one/NAME.toml`, and beside it, written apart, what who stands at the \
+machine sees when a word counts up (`table.py`: tables that turn, heads that swing, by directions and points). Data \
+sheets are quoted from memory, as each file says; what no sheet has (where lines cross, how far a pivot is from the \
+nose) is assumed. None of these files is fit to run a machine with.
 
-Each machine gets a CL file that fits its freedoms: a dome over which the tool leans, grooves and holes around a bar, faces \
-of a column, a contour on a lathe, ways of a knife. `post` writes the program. A reader of words that shares nothing with \
-it takes what the program says, a product of matrices that moves bodies (of parallel machines and arms what papers and \
-makers publish) takes tip, tool axis and edge from these words, and all points and the ways between them are held against \
-the CL file, within what the machine file allows. Where axes and drives went is held against the summary. Not looked at: \
-feeds, the ways between cuts, what a control makes of a program.
+Each machine gets a CL file that fits its freedoms: a dome over which the tool leans, grooves and holes around a bar, \
+faces of a column, a contour on a lathe, ways of a knife. `post` writes the program. A reader of words that shares \
+nothing with it takes what the program says, a product of matrices that moves bodies (of parallel machines and arms \
+what papers and makers publish) takes tip, tool axis and edge from these words, and all points and the ways between \
+them are held against the CL file, within what the machine file allows. Where axes and drives went is held against \
+the summary. Not looked at: feeds, the ways between cuts, what a control makes of a program.
 
-- **works**: all of it. **in part**: the CL file is met, and what is not is told below. **wrong**: a deviation beyond the \
-tolerance; a test fails then (`python/tests/test_sixty_one.py`). It fails as well when this page is not what comes out.
-- **June**: what was said of the kind when 61 other machines were tried in June 2026: 38 worked, 7 took a detour, 15 could \
-not be said, 1 was wrong. The list of them is not kept: "worked" are the kinds of which the report on them says so, "missing" is what it named as such.
+- **works**: all of it. **in part**: the CL file is met, and what is not is told below. **wrong**: a deviation beyond \
+the tolerance; a test fails then (`python/tests/test_sixty_one.py`). It fails as well when this page is not what \
+comes out.
+- **June**: what was said of the kind when 61 other machines were tried in June 2026: 38 worked, 7 took a detour, 15 \
+could not be said, 1 was wrong. The list of them is not kept: "worked" are the kinds of which the report on them says \
+so, "missing" is what it named as such.
 - Deviations are the largest over all points and ways: of the tip from the CL file's way, mm; of tool axis and edge, \
 degrees; of joints from the summary, mm or degrees.
 

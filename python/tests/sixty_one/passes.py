@@ -35,7 +35,8 @@ class Work:
     operations: bool = False
     """Each pass is an operation of its own."""
     turned: tuple[float, ...] = ()
-    """By how much a table B is set before each pass, degrees: ROTABL, and the file's points stand in the turned frame."""
+    """By how much a table B is set before each pass, degrees: ROTABL, and the file's points stand in the turned
+    frame."""
 
     def text(self) -> str:
         """The CL file."""
@@ -95,8 +96,8 @@ def flat(up: object = (0, 0, 1), size: float = 30.0) -> Work:
 def dome(
     up: object = (0, 0, 1), least: float = 8.0, most: float = 35.0, radius: float = 40.0, turn: float = 250.0
 ) -> Work:
-    """Over a dome the tool stands across its face, leaning by ``least`` to ``most`` degrees, and goes around by ``turn``; on
-    a slope it leans another way."""
+    """Over a dome the tool stands across its face, leaning by ``least`` to ``most`` degrees, and goes around by
+    ``turn``; on a slope it leans another way."""
     one, two, three = frame(up)
     axes = []
     for share in np.linspace(0, 1, 15):
@@ -118,8 +119,8 @@ def around(
     beside: float = 5.0,
     lean: float = 0.0,
 ) -> Work:
-    """A groove around ``line`` from the side of ``start``, the tool across it or leaning along it by ``lean`` degrees, and two
-    holes that pass the line by ``beside``."""
+    """A groove around ``line`` from the side of ``start``, the tool across it or leaning along it by ``lean``
+    degrees, and two holes that pass the line by ``beside``."""
     along, side = np.array(line, float), np.array(start, float)
     third = np.cross(along, side)
     angles = np.radians(np.linspace(0, degrees, 12))
@@ -146,7 +147,8 @@ def face() -> Work:
 
 
 def meridian() -> Work:
-    """X, Z, B and C: in planes through the line of C the tool leans and goes along a cone; another plane at 70 degrees."""
+    """X, Z, B and C: in planes through the line of C the tool leans and goes along a cone; another plane at 70
+    degrees."""
     passes = []
     for degrees in (0.0, 70.0, -130.0):
         side = np.array([math.cos(math.radians(degrees)), math.sin(math.radians(degrees)), 0.0])
@@ -214,7 +216,8 @@ def printed(work: Work) -> Work:
 
 
 def cone(up: object, line: object, radius: float = 30.0) -> Work:
-    """A tool that keeps its angle to ``line`` and turns about it, around a ring, and along a straight with it standing."""
+    """A tool that keeps its angle to ``line`` and turns about it, around a ring, and along a straight with it
+    standing."""
     third, lean = np.array(line, float), np.array(up, float) / np.linalg.norm(np.array(up, float))
     across = lean - (lean @ third) * third
     side = np.cross(third, across)

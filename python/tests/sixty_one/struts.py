@@ -1,7 +1,7 @@
 """Joints behind the words of parallel machines, and an arm by the parameters that its maker publishes.
 
-Laws are those of the papers and firmware named with each, written from joints and vectors: where the platform's middle
-stands in the frame, and which way the tool leaves it.
+Laws are those of the papers and firmware named with each, written from joints and vectors: where the platform's
+middle stands in the frame, and which way the tool leaves it.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ def ring(radius: float, degrees: float) -> Floats:
 
 
 def hexapod(frame: float, platform: float) -> tuple[tuple[str, Law], ...]:
-    """Six struts between pairs of joints: 12 degrees to each side of 90, 210 and 330 in the frame, 46 of them on the platform."""
+    """Six struts between pairs of joints: 12 degrees to each side of 90, 210 and 330 in the frame, 46 of them on the
+    platform."""
 
     def strut(above: float, below: float) -> Law:
         return lambda middle, axis: float(
@@ -55,7 +56,8 @@ def hexapod(frame: float, platform: float) -> tuple[tuple[str, Law], ...]:
 
 
 def tricept(frame: float, platform: float, wrist: float) -> tuple[tuple[str, Law], ...]:
-    """A tube in a universal joint, turned about X of the frame first and then about its own Y, no twist (Siciliano 1999)."""
+    """A tube in a universal joint, turned about X of the frame first and then about its own Y, no twist (Siciliano
+    1999)."""
 
     def strut(degrees: float) -> Law:
         def length(middle: Floats, _: Floats) -> float:
@@ -72,8 +74,9 @@ def tricept(frame: float, platform: float, wrist: float) -> tuple[tuple[str, Law
 
 
 def exechon(sides: float, third: float, outer: float, inner: float, depth: float) -> tuple[tuple[str, Law], ...]:
-    """Legs A and C in one plane that turns about the frame's Y, leg B across it (Zoppi, Zlatanov, Molfino 2010), found from
-    what the joints leave: the platform's Y lies in the plane of A and C, and leg B in the platform's plane of X and Z."""
+    """Legs A and C in one plane that turns about the frame's Y, leg B across it (Zoppi, Zlatanov, Molfino 2010),
+    found from what the joints leave: the platform's Y lies in the plane of A and C, and leg B in the platform's plane
+    of X and Z."""
 
     def law(name: str) -> Law:
         def length(middle: Floats, _: Floats) -> float:
@@ -109,8 +112,8 @@ def exechon(sides: float, third: float, outer: float, inner: float, depth: float
 
 
 def sprint(platform: float, carriages: float, rod: float) -> tuple[tuple[str, Law], ...]:
-    """A 3-PRS head (Bonev 2002): each joint of the platform stays in an upright plane through the head's axis, so that it
-    leans without twist and goes a little aside, which the portal takes out."""
+    """A 3-PRS head (Bonev 2002): each joint of the platform stays in an upright plane through the head's axis, so
+    that it leans without twist and goes a little aside, which the portal takes out."""
 
     def law(degrees: float) -> Law:
         def slide(middle: Floats, axis: Floats) -> float:

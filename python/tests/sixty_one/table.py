@@ -1,8 +1,9 @@
-"""The 61 machines as who stands beside them sees them: written from data sheets, not from the machine files beside this.
+"""The 61 machines as who stands beside them sees them: written from data sheets, not from the machine files beside
+this.
 
-A table that carries the part is told by how it goes itself. ISO 841 counts the tool as seen from the part, so that of most
-makes a table turns clockwise, seen from the tip of its direction, as its word counts up: ``down`` below. Positions are in mm
-from where the maker's drawing has them, all words at rest.
+A table that carries the part is told by how it goes itself. ISO 841 counts the tool as seen from the part, so that of
+most makes a table turns clockwise, seen from the tip of its direction, as its word counts up: ``down`` below.
+Positions are in mm from where the maker's drawing has them, all words at rest.
 """
 
 from __future__ import annotations
@@ -35,8 +36,8 @@ class Lack:
 
 @dataclass(frozen=True)
 class Machine:
-    """A row of the table. ``kind`` is what it is called in the field, ``told`` what its program says, ``before`` what was
-    said of its kind in June: what it lacked."""
+    """A row of the table. ``kind`` is what it is called in the field, ``told`` what its program says, ``before`` what
+    was said of its kind in June: what it lacked."""
 
     name: str
     model: str
@@ -403,7 +404,7 @@ ROWS = [
         "missing: turning",
         "in part",
         length=40,
-        but="dialect `haas` has no words of a lathe (G96 is refused, a tool is called by T1 M6): posted as Fanuc, system A",
+        but="dialect `haas` has no words of a lathe (G96 is refused, T1 M6 calls a tool): posted as Fanuc, system A",
         lacks=Lack(passes.turned(), "refused-word", ("--dialect", "haas")),
     ),
     Machine(

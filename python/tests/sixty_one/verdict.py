@@ -26,8 +26,8 @@ SHARES = np.linspace(0, 1, 9)
 DIGITS = 2e-3
 """What the digits of the words may leave beside the tolerance, mm."""
 JOINTS = 0.1
-"""How far a joint may be from where the summary has it, mm or degrees: digits of words, seen from a pivot, and nine places on
-each way where a slide goes out and back again."""
+"""How far a joint may be from where the summary has it, mm or degrees: digits of words, seen from a pivot, and nine
+places on each way where a slide goes out and back again."""
 DEGREES = 5e-3
 """The same of the tool's axis."""
 
@@ -39,8 +39,8 @@ def command() -> str:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What came of a machine: works, in part, refused or wrong, and the largest deviations: tip in mm, the tool's axis and
-    its edge in degrees, joints in mm or degrees, over so many points."""
+    """What came of a machine: works, in part, refused or wrong, and the largest deviations: tip in mm, the tool's
+    axis and its edge in degrees, joints in mm or degrees, over so many points."""
 
     says: str
     why: str = ""
@@ -112,7 +112,8 @@ def posted(machine: Machine, folder: Path) -> Program:
 
 @dataclass
 class Way:
-    """A block with the poses on its way, a row at each share, and the joints; the start is where the block before left off."""
+    """A block with the poses on its way, a row at each share, and the joints; the start is where the block before
+    left off."""
 
     block: Block
     tips: Floats
@@ -213,8 +214,8 @@ def held(machine: Machine, work: Work, ways: list[Way]) -> Verdict:
             if not len(met):
                 near = at + int(np.argmin(off[at:])) if at < len(cuts) else -1
                 raise Wrong(
-                    f"point {points + 1} at {goal.round(3)} {way.round(4)} is not met, nearest line {cuts[near].block.line}"
-                    f" at {tips[near].round(3)} {axes[near].round(4)}"
+                    f"point {points + 1} at {goal.round(3)} {way.round(4)} is not met, nearest line"
+                    f" {cuts[near].block.line} at {tips[near].round(3)} {axes[near].round(4)}"
                 )
             number = at + int(met[0])
             tip, lean = max(tip, float(off[number])), max(lean, float(leant[number]))
@@ -264,9 +265,9 @@ def headed(one: Pass, place: int, done: Way) -> float:
 
 
 def joined(machine: Machine, ways: list[Way], summary: dict[str, Any]) -> float:
-    """How far the summary's ranges of axes and drives are from where bodies and published formulas have them, mm or degrees,
-    from the first pass to the last. A range that is wider at one end has the way to the part and from it: the nearer end
-    counts, and whatever lies outside."""
+    """How far the summary's ranges of axes and drives are from where bodies and published formulas have them, mm or
+    degrees, from the first pass to the last. A range that is wider at one end has the way to the part and from it:
+    the nearer end counts, and whatever lies outside."""
     bodies = machine.bodies
     first, last = machine.work.passes[0].above, machine.work.passes[-1].away
     begins = [k for k, way in enumerate(ways) if np.linalg.norm(way.tips[-1] - first) < 0.5]

@@ -1,5 +1,5 @@
-"""Readers of the words of a program: what each block says, and whether it cuts. Nothing is read past: a word that is not
-known here is an error."""
+"""Readers of the words of a program: what each block says, and whether it cuts. Nothing is read past: a word that is
+not known here is an error."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ class Unread(Exception):
 
 @dataclass
 class Block:
-    """Where the words stand at the end of a block. ``led``: the control keeps the tip, X Y Z are its own. ``mode``: the
-    control's coordinates of a face or a mantle. ``frame``: what a robot's straight move says, its tip and the tool's way."""
+    """Where the words stand at the end of a block. ``led``: the control keeps the tip, X Y Z are its own. ``mode``:
+    the control's coordinates of a face or a mantle. ``frame``: what a robot's straight move says, its tip and the
+    tool's way."""
 
     line: int
     cuts: bool
@@ -59,8 +60,8 @@ def code(letter: str, value: str) -> str:
 
 
 def blocks(text: str, letters: set[str], tips: bool, siemens: bool, signed: str) -> Iterator[Block]:
-    """Of a program in G-code. ``signed`` letters turn to their amount, the way that their sign says. ``letters`` are those that move something; ``tips``: X Y Z are of the tip while the control
-    keeps it."""
+    """Of a program in G-code. ``signed`` letters turn to their amount, the way that their sign says. ``letters`` are
+    those that move something; ``tips``: X Y Z are of the tip while the control keeps it."""
     at: dict[str, float] = dict.fromkeys(letters, UNKNOWN)
     cuts, led, mode, machine = False, False, "", False
     for line, raw in enumerate(text.splitlines(), 1):

@@ -59,6 +59,8 @@ class Machine:
     """The program says the tool's direction itself."""
     signed: str = ""
     """Turning words whose sign is the way there."""
+    shorter: str = ""
+    """Turning words of a place within one turn, to which it turns the shorter way."""
     room: Callable[[dict[str, np.ndarray]], np.ndarray] | None = None
     """What axes leave of a limit that binds them together, mm."""
     options: tuple[str, ...] = ()
@@ -217,7 +219,8 @@ ROWS = [
         "fanuc",
         "X Y Z A C",
         mill((turns("A", down(X), (0, 0.02, 50)), turns("C", down(Z))), HEAD, 550, (0, 0, 40)),
-        passes.dome(),
+        passes.dome(turn=400.0),
+        shorter="C",
     ),
     Machine(
         "okuma-mu5000v",

@@ -331,7 +331,9 @@ def judged(machine: Machine, program: Program) -> Verdict:
 def single(machine: Machine, program: Program) -> Verdict:
     """Of a machine of one channel."""
     letters = {joint.word for joint in machine.bodies.part + machine.bodies.tool}
-    found = words.read(machine.dialect, program.texts[0], letters, machine.tips, machine.signed)
+    found = words.read(
+        machine.dialect, program.texts[0], letters, machine.tips, words.Ways(machine.signed, machine.shorter)
+    )
     if machine.vectors:
         pointed(machine, found)
     ways = placed(machine, found)
@@ -356,6 +358,12 @@ def both(machine: Machine, program: Program) -> Verdict:
         if re.findall(r"^M1\d\d$", text, re.MULTILINE) != ["M100", "M101"]:
             raise Wrong(f"the {name} channel does not wait by M100 and M101")
         own = replace(machine, bodies=bodies)
-        found.append(held(own, passes.waiting(side), placed(own, words.read(machine.dialect, text, {"X", "Z"}, False))))
+        found.append(
+            held(
+                own,
+                passes.waiting(side),
+                placed(own, words.read(machine.dialect, text, {"X", "Z"}, False, words.Ways("", ""))),
+            )
+        )
     worse = max(found, key=lambda one: one.tip)
     return replace(worse, points=sum(one.points for one in found))

@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 UNKNOWN = math.nan
 """A word that a block in machine coordinates has left behind."""
@@ -29,6 +30,13 @@ class Block:
     mode: str = ""
     frame: tuple[list[float], list[list[float]]] | None = None
     named: set[str] = field(default_factory=set)
+
+
+class Ways(NamedTuple):
+    """Turning words of a place within one turn: those whose sign is the way there, those that go the shorter way."""
+
+    signed: str
+    shorter: str
 
 
 WORD = re.compile(r"([A-Z])(3?=|\s*=\s*)?\s*(DC\(|ACP\(|ACN\()?([-+]?(?:\d+\.?\d*|\.\d+))\)?")
@@ -59,8 +67,8 @@ def code(letter: str, value: str) -> str:
     return f"{letter}{number:g}"
 
 
-def blocks(text: str, letters: set[str], tips: bool, siemens: bool, signed: str) -> Iterator[Block]:
-    """Of a program in G-code. ``signed`` letters turn to their amount, the way that their sign says. ``letters`` are
+def blocks(text: str, letters: set[str], tips: bool, siemens: bool, ways: Ways) -> Iterator[Block]:
+    """Of a program in G-code. ``letters`` are
     those that move something; ``tips``: X Y Z are of the tip while the control keeps it."""
     at: dict[str, float] = dict.fromkeys(letters, UNKNOWN)
     cuts, led, mode, machine = False, False, "", False
@@ -104,8 +112,10 @@ def blocks(text: str, letters: set[str], tips: bool, siemens: bool, signed: str)
             elif vector and vector.startswith("3"):
                 found[letter + "3"] = float(value)
             elif letter in letters or (mode == "face" and letter == "Y"):
-                if letter in signed:
+                if letter in ways.signed:
                     way, value = "ACN(" if value.startswith("-") else "ACP(", value.lstrip("-")
+                elif letter in ways.shorter:
+                    way = "DC("
                 found[letter] = reached(at[letter], float(value), way)
             elif letter not in "FSTDHLPEQRN":
                 raise Unread(f"{line}: {raw}")
@@ -221,7 +231,7 @@ def urscript(text: str) -> Iterator[Block]:
             yield Block(line, bool(re.search(r"\bt\s*=", move[2])), at)
 
 
-def read(dialect: str, text: str, letters: set[str], tips: bool, signed: str = "") -> list[Block]:
+def read(dialect: str, text: str, letters: set[str], tips: bool, ways: Ways) -> list[Block]:
     """The blocks of a program."""
     if dialect == "heidenhain":
         return list(klartext(text, letters, tips))
@@ -231,4 +241,4 @@ def read(dialect: str, text: str, letters: set[str], tips: bool, signed: str = "
         return list(krl(text))
     if dialect == "urscript":
         return list(urscript(text))
-    return list(blocks(text, letters, tips, dialect == "siemens", signed))
+    return list(blocks(text, letters, tips, dialect == "siemens", ways))

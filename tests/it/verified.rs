@@ -96,6 +96,28 @@ fn the_verb_tells_what_it_finds_and_where() {
 }
 
 #[test]
+fn an_axis_that_was_not_moved_stands_within_its_travel() {
+    // Homed at its upper ends, as many routers are: the drawing's zero is beyond them.
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let mut machine = vec!["-m", "vmc", "--mount=-400,-400,0", "--tool-length", "80", "-q"];
+    machine.extend(["--set", "axis.X.travel=[-800,-2]", "--set", "axis.Y.travel=[-800,-2]"]);
+    let [good, bad] = [at("good.nc"), at("bad.nc")];
+    let made = post(&[&machine[..], &["-o", &good, PLATE]].concat());
+    assert_eq!(made.code, 0, "{}", made.err);
+    let held =
+        |program: &str| post(&[&["verify", program, "--against", PLATE], &machine[..]].concat());
+    let found = held(&good);
+    assert_eq!(found.code, 0, "{}", found.err);
+    // Where it is sent beyond them it is told, there alone.
+    let text = fs::read_to_string(&good).unwrap().replace("M30\n", "G53 G0 Y0.\nM30\n");
+    fs::write(&bad, text).unwrap();
+    let found = held(&bad).err;
+    let told = "Y would be at 0.000 mm, its travel ends at -2.000 mm\n";
+    assert!(found.contains("error[over-travel]") && found.contains(told), "{found}");
+}
+
+#[test]
 fn the_summary_says_whether_it_holds_and_why_not() {
     let (folder, program) = plate();
     let json = folder.path().join("found.json");

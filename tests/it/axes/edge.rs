@@ -391,6 +391,12 @@ fn verifying_sees_an_edge_that_does_not_go_along_the_travel() {
         let message = format!("the leading edge points {off} off the direction of travel");
         assert!(found.code == 1 && found.err.contains(&message), "{}", found.err);
     }
+    // A corner where the tip moves within the tolerance while the edge turns is one all the same.
+    let moved = right.replacen("G93 C", "G93 X100.0030 C", 1);
+    assert!(moved != right && right.contains("X100.0000"), "{right}");
+    std::fs::write(folder.path().join("right.ngc"), moved).unwrap();
+    let found = run(&["verify", "right.ngc", "--against", "part.cls"]);
+    assert_eq!(found.code, 0, "{}", found.err);
 }
 
 /// Around a square, a corner of it cut off.

@@ -454,9 +454,15 @@ fn turns_in_zx(machine: &Machine) -> bool {
         && axes.all(|axis| !axis.joint.rotary && matches!(axis.name.as_str(), "X" | "Z"))
 }
 
-/// Where the axes stand before a program says so: at the drawing's zeros, index axes where they start.
+/// Where the axes stand before a program says so: at the drawing's zeros, or at the end of their travel that is nearest to
+/// it, index axes where they start.
 fn start(machine: &Machine) -> Joints {
     let mut joints = machine.solution.start;
+    for (value, axis) in joints.iter_mut().zip(&machine.axes) {
+        if let Some([least, most]) = axis.travel {
+            *value = value.max(least).min(most);
+        }
+    }
     for value in joints.iter_mut().skip(machine.axes.len().min(MAX_AXES)) {
         *value = 0.0;
     }

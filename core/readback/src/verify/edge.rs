@@ -45,6 +45,9 @@ impl<C: Course> Verifier<'_, C> {
             return;
         }
         let corner = self.machine.solution.corner + ROUNDED;
+        if ways.windows(2).any(|pair| self.stands_at_corner([&pair[0], &pair[1]], corner, places)) {
+            return;
+        }
         let ends = places.windows(2).filter(|ends| travels(&ends[0], &ends[1])).flatten();
         let off = ends.map(|place| off_ways(place, &ways, corner));
         let farther = |worst: WayDistance, next: WayDistance| match next.angle > worst.angle {
@@ -63,6 +66,19 @@ impl<C: Course> Verifier<'_, C> {
         );
         self.found.axis.take(by, motion.line, cl_line);
         self.fault("deviation", message, Some(motion), Some(cl_line), Some(by));
+    }
+
+    /// Whether all places are those of a corner between two ways: the tool turns there, and what it goes meanwhile is no
+    /// direction.
+    fn stands_at_corner(
+        &self,
+        [before, behind]: [&TravelWay; 2],
+        corner: f64,
+        places: &[ToolPlace],
+    ) -> bool {
+        let turn = angle_of((before.direction - behind.direction).norm());
+        let near = |place: &ToolPlace| (place.point - behind.from).norm() <= self.bound.point;
+        turn > corner && places.iter().all(near)
     }
 
     /// The ways of the elements from `first` to `last`, that before them and that behind them which lead elsewhere: a way on
@@ -107,6 +123,8 @@ pub(super) struct TravelWay {
     line: u64,
     /// That direction, of length one, part frame.
     direction: Vector3<f64>,
+    /// Where it begins, mm, part frame.
+    from: Vector3<f64>,
 }
 
 impl TravelWay {
@@ -121,7 +139,7 @@ impl TravelWay {
         laid(way, &element.from.axis, STRAIGHT_IN).filter(|_| element.is_cut())?;
         // Not laid across the tool: that turns on the way.
         let direction = way.normalize();
-        Some(Self { line: element.line, direction })
+        Some(Self { line: element.line, direction, from: element.from.point })
     }
 }
 

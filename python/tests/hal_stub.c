@@ -10,22 +10,28 @@ enum { PINS = 256, NAME = 64 };
 
 static char names[PINS][NAME];
 static double values[PINS];
+static double *places[PINS];
 static int pins;
 
-static void *pin(const char *name)
+/* A name and where its value is: `at`, or a place of our own if that is NULL. */
+static void *keep(const char *name, double *at)
 {
     if (pins == PINS)
         abort();
     snprintf(names[pins], NAME, "%s", name);
-    return &values[pins++];
+    places[pins] = at ? at : &values[pins];
+    return places[pins++];
 }
 
-/* The value of a pin of type float, NULL if the module has none of that name. */
+static void *pin(const char *name) { return keep(name, NULL); }
+
+/* The value of a pin or parameter of type float, NULL if the module has none of that name; the newest, where a module has
+   been started again. */
 double *stub_pin(const char *name)
 {
-    for (int each = 0; each < pins; each++)
+    for (int each = pins - 1; each >= 0; each--)
         if (strcmp(names[each], name) == 0)
-            return &values[each];
+            return places[each];
     return NULL;
 }
 
@@ -64,6 +70,31 @@ int hal_pin_s32_new(const char *name, int direction, void **to, int component)
 {
     (void)direction; (void)component;
     *to = pin(name);
+    return 0;
+}
+
+int hal_pin_u32_newf(int direction, void **to, int component, const char *format, ...)
+{
+    char name[NAME];
+    va_list arguments;
+    (void)direction; (void)component;
+    va_start(arguments, format);
+    vsnprintf(name, NAME, format, arguments);
+    va_end(arguments);
+    *to = pin(name);
+    return 0;
+}
+
+/* A parameter is in the module's own memory. */
+int hal_param_float_newf(int direction, double *at, int component, const char *format, ...)
+{
+    char name[NAME];
+    va_list arguments;
+    (void)direction; (void)component;
+    va_start(arguments, format);
+    vsnprintf(name, NAME, format, arguments);
+    va_end(arguments);
+    keep(name, at);
     return 0;
 }
 

@@ -1,9 +1,12 @@
 """What the tests of LinuxCNC share: its configurations, a small mill, and how its programs are called."""
 
+import ctypes
+import functools
 import os
 import shutil
 import subprocess
 import sys
+import tempfile
 import textwrap
 import time
 from pathlib import Path
@@ -131,6 +134,71 @@ def real(program: str, *arguments: str | Path) -> "subprocess.CompletedProcess[s
     if run.returncode == 3:
         pytest.skip(f"the real LinuxCNC is not to be had: {run.stderr.strip()}")
     return run
+
+
+class Module:
+    """A kinematics module of LinuxCNC, called in this process."""
+
+    def __init__(
+        self, stub: ctypes.CDLL, name: str, coordinates: str | None = None, folder: Path = MODULES
+    ) -> None:
+        self.stub = stub
+        self.name = name
+        self.none, self.branch = ctypes.c_ulong(), ctypes.c_ulong()  # flags: none, and which of several solutions
+        self.library = ctypes.CDLL(str(folder / f"{name}.so"), mode=os.RTLD_NOW)
+        if coordinates is not None:
+            place = ctypes.c_void_p.in_dll(self.library, "rtapi_info_address_coordinates").value
+            self.coordinates = ctypes.create_string_buffer(coordinates.encode())
+            assert place is not None
+            ctypes.c_void_p.from_address(place).value = ctypes.addressof(self.coordinates)
+        assert self.library.rtapi_app_main() == 0
+        if name == "xyzab_tdr_kins":  # it makes its pins as it is asked for its type, and begins without TCP
+            self.library.kinematicsType()
+            assert self.library.kinematicsSwitch(1) == 0
+
+    def set(self, pin: str, value: float) -> None:
+        self.stub.stub_pin.restype = ctypes.POINTER(ctypes.c_double)
+        found = self.stub.stub_pin(f"{self.name}.{pin}".encode())
+        assert found, f"{self.name} has no pin {pin}"
+        found[0] = value
+
+    def tip(self, joints: list[float]) -> list[float]:
+        """X, Y and Z of the world."""
+        return self.forward(joints)[:3]
+
+    def forward(self, joints: list[float], near: list[float] | None = None) -> list[float]:
+        """X, Y, Z, A, B and C of the world; `near` is where a module begins that goes there by steps."""
+        given = (ctypes.c_double * 16)(*joints)
+        pose = (ctypes.c_double * 9)(*(near or []))
+        assert self.library.kinematicsForward(given, pose, ctypes.byref(self.none), ctypes.byref(self.branch)) == 0
+        return list(pose)[:6]
+
+    def inverse(self, pose: list[float], count: int) -> list[float]:
+        """The joints, `count` of them, on the branch of the `forward` before."""
+        given = (ctypes.c_double * 9)(*pose)
+        joints = (ctypes.c_double * 16)()
+        assert self.library.kinematicsInverse(given, joints, ctypes.byref(self.branch), ctypes.byref(self.none)) == 0
+        self.none.value = 0
+        return list(joints)[:count]
+
+
+@functools.cache
+def hal() -> ctypes.CDLL:
+    """The stand-in for HAL, once in a process: all modules are bound to the first that is there."""
+    with tempfile.TemporaryDirectory() as room:
+        library = Path(room) / "hal.so"
+        source = CHECKOUT / "python/tests/hal_stub.c"
+        subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", library, source], check=True)
+        return ctypes.CDLL(str(library), mode=os.RTLD_GLOBAL | os.RTLD_NOW)
+
+
+@pytest.fixture
+def stub() -> ctypes.CDLL:
+    if not MODULES.is_dir():
+        pytest.skip("LinuxCNC's modules are not here (package linuxcnc-uspace)")
+    if not shutil.which("cc"):
+        pytest.skip("no C compiler: LinuxCNC's modules cannot be called")
+    return hal()
 
 
 @pytest.fixture

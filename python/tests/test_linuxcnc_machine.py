@@ -18,17 +18,18 @@ import pytest
 
 from conftest import CHECKOUT
 from linuxcnc_parts import (
-    MODULES,
     VISMACH,
+    Module,
     configuration,
     from_ini,
     mill,
     post,
     seed,
+    stub,
     written,
 )
 
-__all__ = ["seed"]  # a fixture
+__all__ = ["seed", "stub"]  # fixtures
 
 
 # Signals of the dual table that its HAL files give no value.
@@ -240,51 +241,6 @@ def test_lengths_and_switches_come_from_the_hal_files(
     run = from_ini(tmp_path / "machine" / source.name, "-o", "-", *said)
     assert wanted in run.stdout + run.stderr
     assert (run.returncode == 0) == (wanted in run.stdout)
-
-
-class Module:
-    """A kinematics module of LinuxCNC, called in this process."""
-
-    def __init__(self, stub: ctypes.CDLL, name: str, coordinates: str | None) -> None:
-        self.stub = stub
-        self.name = name
-        self.library = ctypes.CDLL(str(MODULES / f"{name}.so"), mode=os.RTLD_NOW)
-        if coordinates is not None:
-            place = ctypes.c_void_p.in_dll(self.library, "rtapi_info_address_coordinates").value
-            self.coordinates = ctypes.create_string_buffer(coordinates.encode())
-            assert place is not None
-            ctypes.c_void_p.from_address(place).value = ctypes.addressof(self.coordinates)
-        assert self.library.rtapi_app_main() == 0
-        if name == "xyzab_tdr_kins":  # it makes its pins as it is asked for its type, and begins without TCP
-            self.library.kinematicsType()
-            assert self.library.kinematicsSwitch(1) == 0
-
-    def set(self, pin: str, value: float) -> None:
-        self.stub.stub_pin.restype = ctypes.POINTER(ctypes.c_double)
-        found = self.stub.stub_pin(f"{self.name}.{pin}".encode())
-        assert found, f"{self.name} has no pin {pin}"
-        found[0] = value
-
-    def tip(self, joints: list[float]) -> list[float]:
-        """X, Y and Z of the world."""
-        given = (ctypes.c_double * 16)(*joints)
-        pose = (ctypes.c_double * 9)()
-        flags = (ctypes.c_ulong * 2)()
-        of = ctypes.byref
-        assert self.library.kinematicsForward(given, pose, of(flags), of(flags, ctypes.sizeof(ctypes.c_ulong))) == 0
-        return list(pose)[:3]
-
-
-@pytest.fixture(scope="module")
-def stub(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    if not MODULES.is_dir():
-        pytest.skip("LinuxCNC's modules are not here (package linuxcnc-uspace)")
-    if not shutil.which("cc"):
-        pytest.skip("no C compiler: LinuxCNC's modules cannot be called")
-    library = tmp_path_factory.mktemp("stub") / "hal.so"
-    source = CHECKOUT / "python/tests/hal_stub.c"
-    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", library, source], check=True)
-    return ctypes.CDLL(str(library), mode=os.RTLD_GLOBAL | os.RTLD_NOW)
 
 
 def read_back(machine: Path, folder: Path, letters: str, poses: list[list[float]]) -> list[dict[str, str]]:

@@ -18,8 +18,12 @@ ROTARY = {
     "both": [("C", "B"), ("C", "A"), ("A", "B")],
     "one": [("A", ""), ("B", ""), ("C", ""), ("", "A"), ("", "B")],
     "none": [("", "")],
+    "three": [("CA", "B"), ("BC", "A"), ("C", "AB"), ("A", "CB"), ("", "CBA")],
 }
 """Rotary axes that carry the part and the tool, by the class of machine."""
+
+KINDS = {"tables": 0.35, "heads": 0.15, "both": 0.25, "one": 0.15, "none": 0.1}
+"""How often each class is drawn."""
 
 
 @dataclass
@@ -72,7 +76,8 @@ def write_stl(path: Path, points: np.ndarray, faces: np.ndarray) -> None:
 class Maker:
     """Makes the machine file line by line."""
 
-    def __init__(self, rng: np.random.Generator, folder: Path) -> None:
+    def __init__(self, rng: np.random.Generator, folder: Path, kinds: dict[str, float] = KINDS) -> None:
+        self.kinds = kinds
         self.rng, self.folder, self.lines, self.fixtures = rng, folder, list[str](), 0
         self.part, self.tool, self.tcp = "", "", False
         self.mount = rng.uniform(-20, 20, 3).round(3)
@@ -92,7 +97,7 @@ class Maker:
 
     def chain(self) -> None:
         """The axes: what carries the part and what the tool, where, and which way."""
-        kind = str(self.rng.choice(list(ROTARY), p=[0.35, 0.15, 0.25, 0.15, 0.1]))
+        kind = str(self.rng.choice(list(self.kinds), p=list(self.kinds.values())))
         held, led = self.pick(ROTARY[kind])  # type: ignore[misc]
         slides = self.rng.permutation(list("XYZ"))
         below = "".join(slide for slide in slides if self.chance(0.3))

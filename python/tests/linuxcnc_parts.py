@@ -139,9 +139,7 @@ def real(program: str, *arguments: str | Path) -> "subprocess.CompletedProcess[s
 class Module:
     """A kinematics module of LinuxCNC, called in this process."""
 
-    def __init__(
-        self, stub: ctypes.CDLL, name: str, coordinates: str | None = None, folder: Path = MODULES
-    ) -> None:
+    def __init__(self, stub: ctypes.CDLL, name: str, coordinates: str | None = None, folder: Path = MODULES) -> None:
         self.stub = stub
         self.name = name
         self.none, self.branch = ctypes.c_ulong(), ctypes.c_ulong()  # flags: none, and which of several solutions

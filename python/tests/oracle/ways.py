@@ -82,7 +82,7 @@ class Search:
         q[:, rotary] = seeds
         if rotary:
             near = np.linalg.norm(tool_axes(self.machine, q) - goal, axis=1)
-            q = self.turned(q[near < max(0.6, np.sort(near)[: 40][-1])], goal, 12)
+            q = self.turned(q[near < max(0.6, np.sort(near)[:40][-1])], goal, 12)
         q = q[np.linalg.norm(tool_axes(self.machine, q) - goal, axis=1) < EXACT]
         if not len(q):
             return q

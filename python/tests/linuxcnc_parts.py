@@ -154,11 +154,15 @@ class Module:
             self.library.kinematicsType()
             assert self.library.kinematicsSwitch(1) == 0
 
-    def set(self, pin: str, value: float) -> None:
+    def pin(self, name: str) -> "ctypes._Pointer[ctypes.c_double]":
+        """The place of a pin's value."""
         self.stub.stub_pin.restype = ctypes.POINTER(ctypes.c_double)
-        found = self.stub.stub_pin(f"{self.name}.{pin}".encode())
-        assert found, f"{self.name} has no pin {pin}"
-        found[0] = value
+        found: ctypes._Pointer[ctypes.c_double] = self.stub.stub_pin(f"{self.name}.{name}".encode())
+        assert found, f"{self.name} has no pin {name}"
+        return found
+
+    def set(self, pin: str, value: float) -> None:
+        self.pin(pin)[0] = value
 
     def tip(self, joints: list[float]) -> list[float]:
         """X, Y and Z of the world."""

@@ -13,7 +13,9 @@ import shutil
 import subprocess
 from collections import Counter
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +27,7 @@ pytest.importorskip("tomllib", reason="Python 3.11 reads machine files")
 from oracle.machine import Machine  # noqa: E402
 from oracle.program import Motion, Reader  # noqa: E402
 from oracle.ways import Search  # noqa: E402
-from oracle.worlds import KINDS, Maker, numbers  # noqa: E402
+from oracle.worlds import KINDS, Maker  # noqa: E402
 
 SHARES = np.linspace(0, 1, 9)
 TOLERANCE, LEAN = 0.005, 0.05
@@ -126,6 +128,7 @@ class Case:
     travel: dict[str, tuple[float, float]]
     passes: list[tuple[Floats, Floats]]
     length: float
+    cuts: set[int]
 
 
 def paths(rng: np.random.Generator, machine: Machine, length: float, travel: dict) -> list[tuple[Floats, Floats]]:
@@ -151,8 +154,9 @@ def paths(rng: np.random.Generator, machine: Machine, length: float, travel: dic
     return found
 
 
-def write_cl(path: Path, passes: list[tuple[Floats, Floats]]) -> None:
-    """A CL file: above each cut at rapid, along it at feed, and away."""
+def write_cl(path: Path, passes: list[tuple[Floats, Floats]]) -> set[int]:
+    """A CL file: above each cut at rapid, along it at feed, and away. Returns the lines of its cuts."""
+    cuts = set[int]()
     lines = ["PARTNO/CHAINS", "UNITS/MM", "LOADTL/1", "SPINDL/5000,CLW"]
 
     def goto(tip: Floats, axis: Floats) -> str:
@@ -160,9 +164,11 @@ def write_cl(path: Path, passes: list[tuple[Floats, Floats]]) -> None:
 
     for tips, axes in passes:
         lines += ["RAPID", goto(tips[0] + ABOVE * axes[0], axes[0]), "FEDRAT/800,MMPM"]
+        cuts |= set(range(len(lines) + 1, len(lines) + 1 + len(tips)))
         lines += [goto(tip, axis) for tip, axis in zip(tips, axes)]
         lines += ["RAPID", goto(tips[-1] + ABOVE * axes[-1], axes[-1])]
     path.write_text("\n".join([*lines, "SPINDL/OFF", "FINI", ""]))
+    return cuts
 
 
 def case(rng: np.random.Generator, folder: Path) -> Case:
@@ -199,13 +205,16 @@ def case(rng: np.random.Generator, folder: Path) -> Case:
         reach = float(rng.uniform(200, 1500)) * (-1 if above else 1)
         slope = round(float(rng.uniform(0.2, 3)), 2) * (1 if above else -1)
         limits.append(Limit(slide, str(maker.pick(turned)), round(reach, 1), slope, above))
+    if limits or maker.chance(0.5):
+        # Not to the end of a travel that is longer than any: limits would be passed there.
+        text = text.replace("[control]\n", f'[control]\nleave = {{ along = "tool", distance = {ABOVE + 20} }}\n')
     lines = [text, *words.said(), *(line for limit in limits for line in limit.said())]
     lines += ["[clearance]", 'rapid_axes = "together"', "[tools.1]", f"length = {maker.length}", ""]
     (folder / "m.toml").write_text("\n".join(lines))
     machine = Machine.read(folder / "m.toml", folder)
     passes = paths(rng, machine, maker.length, travel)
-    write_cl(folder / "p.cls", passes)
-    return Case(folder, machine, words, limits, travel, passes, maker.length)
+    cuts = write_cl(folder / "p.cls", passes)
+    return Case(folder, machine, words, limits, travel, passes, maker.length, cuts)
 
 
 def poses(machine: Machine, q: Floats, length: float) -> tuple[Floats, Floats]:
@@ -220,11 +229,11 @@ def angle(one: Floats, other: Floats) -> Floats:
     return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(one - other, axis=-1) / 2, 0, 1)))
 
 
-def slack(found: Case, q: Floats, led: bool) -> tuple[float, float]:
-    """What the digits of all words can do to tip and tool axis, mm and degrees."""
+def slacks(found: Case, q: Floats, led: Floats) -> tuple[Floats, Floats]:
+    """What the digits of all words can do to tip and tool axis at each pose, mm and degrees."""
     machine, back = found.machine, np.abs(np.linalg.inv(found.words.matrix))
     tip, axis = poses(machine, q, found.length)
-    off, leant = (math.sqrt(3) * DIGIT if led else 0.0), 0.0
+    off, leant = np.where(led, math.sqrt(3) * DIGIT, 0.0), np.zeros(len(q))
     for place, one in enumerate(machine.axes):
         step = 1e-4
         turned = q.copy()
@@ -232,8 +241,8 @@ def slack(found: Case, q: Floats, led: bool) -> tuple[float, float]:
         tip2, axis2 = poses(machine, turned, found.length)
         share = DIGIT * float(back[found.words.letters.index(one.name)].sum())
         share = (math.radians(share) if one.rotary else share) / step
-        off += 0.0 if led else float(np.linalg.norm(tip2 - tip, axis=1).max()) * share
-        leant += float(angle(axis2, axis).max()) * share
+        off += np.where(led, 0.0, np.linalg.norm(tip2 - tip, axis=1) * share)
+        leant += angle(axis2, axis) * share
     return off + 2e-6, leant + 2e-6
 
 
@@ -252,33 +261,40 @@ def wrongs(found: Case, text: str) -> Iterator[str]:
             by = float(np.max(limit.passed(found.machine, q[-1:] if motion.rapid else q)))
             if by > 0.01:
                 yield f"{motion.line}: a limit is passed by {by:.3f}"
-    cuts = [(motion, q, *poses(found.machine, q, found.length)) for motion, q in motions if not motion.rapid]
+    cutting = [(motion, q) for motion, q in motions if not motion.rapid]
+    cuts = []
+    if cutting:
+        all_poses = np.stack([q for _, q in cutting])
+        tip, axis = poses(found.machine, all_poses.reshape(-1, all_poses.shape[2]), found.length)
+        led = np.array([motion.keeps_tip for motion, _ in cutting])
+        off, leant = slacks(found, all_poses[:, -1], led)
+        places = (len(cutting), len(SHARES), 3)
+        lines = [motion.line for motion, _ in cutting]
+        cuts = list(zip(lines, tip.reshape(places), axis.reshape(places), off, leant, strict=True))
     at = 0
     for tips, axes in found.passes:
         for place, (goal, lean) in enumerate(zip(tips, axes)):
             for number in range(at, len(cuts)):
-                motion, q, tip, axis = cuts[number]
-                off, leant = slack(found, q[-1:], motion.keeps_tip)
+                _, tip, axis, off, leant = cuts[number]
                 # Beside a pole the tool may lean as far as the file allows.
                 if np.linalg.norm(tip[-1] - goal) <= off + 1e-4 and angle(axis[-1], lean) <= LEAN + leant:
                     break
             else:
-                yield f"point {place} of a cut at {goal} is not met behind line {cuts[at][0].line if cuts else 0}"
+                yield f"point {place} of a cut at {goal} is not met behind line {cuts[at][0] if cuts else 0}"
                 return
             # Between the points before and this one, the ways there.
-            for motion, q, tip, axis in cuts[at : number + 1] if place else []:
-                off, leant = slack(found, q[-1:], motion.keeps_tip)
+            for line, tip, axis, off, leant in cuts[at : number + 1] if place else []:
                 start, way = tips[place - 1], goal - tips[place - 1]
                 share = np.clip((tip - start) @ way / max(float(way @ way), 1e-12), 0, 1)
                 aside = np.linalg.norm(tip - start - share[:, None] * way, axis=1).max()
                 if aside > TOLERANCE + off:
-                    yield f"{motion.line}: the tip strays by {aside:.4f}, {TOLERANCE + off:.4f} are allowed"
+                    yield f"{line}: the tip strays by {aside:.4f}, {TOLERANCE + off:.4f} are allowed"
                 normal = np.cross(axes[place - 1], lean)
                 size = float(np.linalg.norm(normal))
                 if size > 1e-4:
                     tilt = np.degrees(np.arcsin(np.clip(np.abs(axis @ normal) / size, 0, 1))).max()
                     if tilt > LEAN + leant:
-                        yield f"{motion.line}: the tool leaves its plane by {tilt:.4f} degrees"
+                        yield f"{line}: the tool leaves its plane by {tilt:.4f} degrees"
             at = number + 1
 
 
@@ -325,43 +341,66 @@ def stands_against(found: Case) -> str | None:
 
 def cases() -> int:
     """Few in a usual run; in a long one 2,000, or so many times as many."""
-    return 2000 * int(os.environ.get("POST_ROUNDS", 0)) or 24
+    return 2000 * int(os.environ.get("POST_ROUNDS", 0)) or 20
+
+
+@dataclass
+class Verdict:
+    """What came of a case: its counts, why it was refused and what speaks against that, and what is wrong."""
+
+    counts: Counter[str]
+    reasons: Counter[str]
+    against: Counter[str]
+    needless: str = ""
+    wrong: str = ""
+
+
+def judged(folder: Path, seed: int, number: int) -> Verdict:
+    """Case ``number`` of a seed, in a folder of its own."""
+    rng = np.random.default_rng([7, seed, number])
+    room = folder / str(number)
+    room.mkdir()
+    found = case(rng, room)
+    counts = Counter({f"{len(found.machine.axes)} axes": 1, "paths": len(found.passes)})
+    verdict = Verdict(counts, Counter(), Counter())
+    text, said = posted(found)
+    if text is None:
+        verdict.reasons.update(set(re.findall(r"error\[([a-z-]+)\]", said)))
+        assert verdict.reasons, said
+        counts["refused"] = 1
+        if {int(line) for line in re.findall(r"--> p\.cls:(\d+):", said)} & found.cuts:
+            why = stands_against(found)
+            verdict.against[re.sub(r"cut \d: ", "", why) if why else "nothing"] += 1
+            verdict.needless = "" if why else f"case {number}: {said}"
+        else:
+            verdict.against["of a way off the part: not searched"] += 1
+        return verdict
+    verdict.wrong = next((f"case {number}: {wrong}" for wrong in wrongs(found, text)), "")
+    counts.update({"posted": 1, "with words": bool(found.words.said()), "with limits": bool(found.limits)})
+    if number % 4 == 0:
+        counts.update({"spoilt": 1, "seen": next(wrongs(found, spoilt(rng, text)), None) is not None})
+    shutil.rmtree(room)
+    return verdict
 
 
 def test_random_chains_words_limits(tmp_path: Path) -> None:
     """Chains x words x limits. Of what is posted each point is met within the digits, each way within the tolerance,
-    travels and limits are kept; a word that is put off is seen. Of what is refused no way is found inside travel and
+    travels and limits are kept; a word that is put off is seen. Of a cut that is refused no way is found inside travel and
     limits either."""
-    rng, tally, sizes = drawn(7), Counter[str](), Counter[str]()
-    reasons, against, needless = Counter[str](), Counter[str](), list[str]()
-    for number in range(cases()):
-        folder = tmp_path / str(number)
-        folder.mkdir()
-        found = case(rng, folder)
-        sizes[f"{len(found.machine.axes)} axes"] += 1
-        text, said = posted(found)
-        tally["paths"] += len(found.passes)
-        if text is None:
-            codes = set(re.findall(r"error\[([a-z-]+)\]", said))
-            assert codes, said
-            tally["refused"] += 1
-            reasons.update(codes)
-            why = stands_against(found)
-            against[re.sub(r"\d+", "n", why) if why else "nothing"] += 1
-            if why is None:
-                needless.append(f"{folder}: {said}")
-            continue
-        wrong = list(wrongs(found, text))
-        assert not wrong, f"{folder}: {wrong[:3]}"
-        tally["posted and right"] += 1
-        tally["with words"] += bool(found.words.said())
-        tally["with limits"] += bool(found.limits)
-        tally["spoilt"] += 1
-        tally["seen"] += bool(list(wrongs(found, spoilt(rng, text))))
-        shutil.rmtree(folder)
+    seed = int(drawn(7).integers(2**31))
+    with ProcessPoolExecutor(os.cpu_count() if "POST_ROUNDS" in os.environ else 1) as pool:
+        verdicts = list(pool.map(partial(judged, tmp_path, seed), range(cases()), chunksize=5))
+    counts, reasons, against = (
+        sum((getattr(verdict, name) for verdict in verdicts), Counter[str]())
+        for name in ("counts", "reasons", "against")
+    )
     told = {"refused because": dict(reasons), "what the search has against those": dict(against)}
-    print(json.dumps({**tally, **sizes, **told}))
-    print("\n".join(needless[:20]))
-    assert tally["posted and right"] * 2 >= tally["refused"], reasons
+    print(json.dumps(dict(sorted(counts.items())) | told))
+    wrong = [verdict.wrong for verdict in verdicts if verdict.wrong]
+    needless = [verdict.needless for verdict in verdicts if verdict.needless]
+    print("\n".join([*wrong, *needless]))
+    assert not wrong, f"{tmp_path}: {wrong[:3]}"
+    assert counts["posted"] >= 2 * counts["refused"], reasons
     # Nine of ten, less what so many draws may lack of it by chance (three standard deviations).
-    assert tally["seen"] >= 0.9 * tally["spoilt"] - 3.0 * (0.09 * tally["spoilt"]) ** 0.5
+    assert counts["seen"] >= 0.9 * counts["spoilt"] - 3.0 * (0.09 * counts["spoilt"]) ** 0.5
+    assert not needless, f"{tmp_path}: {needless[:3]}"

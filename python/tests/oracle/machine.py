@@ -154,13 +154,14 @@ class Machine:
         place = [axis.name for axis in self.axes].index(name)
         return place if self.axes[place].carries_part else place + 1
 
-    def _moved(self, place: int, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What an axis does to what it moves: a table goes against the direction of the axis (ISO 841)."""
+    def _moved(self, place: int, q: np.ndarray) -> tuple[np.ndarray | None, np.ndarray]:
+        """What an axis does to what it moves, a slide turns nothing: a table goes against the direction of the axis
+        (ISO 841)."""
         axis, way = self.axes[place], q[:, place]
         if axis.carries_part:
             way = -way
         if not axis.rotary:
-            return np.broadcast_to(SAME, (len(way), 3, 3)), way[:, None] * axis.direction
+            return None, way[:, None] * axis.direction
         rotation = turn(axis.direction, way)
         return rotation, axis.point - rotation @ axis.point
 
@@ -171,7 +172,7 @@ class Machine:
         for place in order:
             by, to = self._moved(place, q)
             shift = shift + (np.einsum("nij,nj->ni", rotation, to) if turned else to)
-            if self.axes[place].rotary:
+            if by is not None:
                 rotation, turned = rotation @ by if turned else by, True
         return rotation, shift
 

@@ -208,6 +208,13 @@ class Reader:
         self.shown = to
         turns = any(moving[place] for place, axis in enumerate(machine.axes) if axis.rotary)
         boxed = mode == 0 and not machine.together and int(moving.sum()) > 1
+        withdraws = not (turns or curved or boxed) and self._straight_off(first, here, end, length)
+        ends = np.vstack([first, end])
+        return Motion(line, mode == 0, self.tool, ends, at, boxed, keeps, turns, curved, withdraws)
+
+    def _straight_off(self, first: np.ndarray, here: np.ndarray, end: np.ndarray, length: float) -> bool:
+        """Whether the tip goes from `here` along its tool, away from the part."""
+        machine = self.machine
         way = machine.tip_in_part(end, length)[0] - here
         rotation, _ = machine.place(len(machine.axes), first)
         held, _ = machine.place(0, first)
@@ -215,10 +222,7 @@ class Reader:
         out = float(way @ axis)
         # As far aside as three linear words at both ends and two rotary ones are rounded, by half of their last digit.
         lean = 6 * 0.5e-3 + 2 * math.radians(0.5e-3) * abs(out)
-        straight = out >= 0 and float(np.linalg.norm(way - axis * out)) <= 1.01 * lean
-        withdraws = straight and not (turns or curved or boxed)
-        ends = np.vstack([first, end])
-        return Motion(line, mode == 0, self.tool, ends, at, boxed, keeps, turns, curved, withdraws)
+        return out >= 0 and float(np.linalg.norm(way - axis * out)) <= 1.01 * lean
 
     def _free(self, start: dict, to: dict, arc: Arc | None, t: np.ndarray) -> np.ndarray:
         """Axes that go evenly, or X, Y and Z on an arc."""

@@ -92,31 +92,76 @@ class Search:
         q = self.machine.with_tip(np.broadcast_to(tip, (len(first), 3)), q[first], self.length)
         return q[self.within(q)]
 
+    def branch(self, q: Floats) -> Floats:
+        """On which side of the pole two rotary axes are: the sense of the tool axis' ways by each and the tool axis."""
+        if len(self.rotary) != 2:
+            return np.ones(len(q))
+        here, ways = tool_axes(self.machine, q), []
+        for place in self.rotary:
+            moved = q.copy()
+            moved[:, place] += 1e-6
+            ways.append((tool_axes(self.machine, moved) - here) / 1e-6)
+        return np.sign(np.einsum("ni,ni->n", np.cross(*ways), here))
+
+    def sense(self, q: Floats) -> Floats:
+        """Of the slides' directions as the part sees them: where it changes they lie in one plane, and lead nowhere."""
+        slides = self.machine.slides()
+        tried = np.repeat(q[None], 1 + len(slides), axis=0)
+        for number, slide in enumerate(slides, 1):
+            tried[number, :, slide] += 1.0
+        tips = self.machine.tip_in_part(tried.reshape(-1, q.shape[1]), self.length).reshape(1 + len(slides), len(q), 3)
+        return np.sign(np.linalg.det(np.moveaxis(tips[1:] - tips[0], 0, 2)))
+
     def way(self, tips: Floats, axes: Floats, above: float) -> str | None:
-        """None if there is a way through all points that keeps to travel and limits, begins and ends `above` them, and
-        turns no axis by a leap; else what stands against it."""
+        """None if there is a way through all points that keeps to travel and limits, begins and ends `above` them, turns no
+        axis by a leap and stays on its side of the pole; else what stands against it."""
         ways = self.solutions(tips[0], axes[0])
         if not len(ways):
             return "its first point has no solution inside travel and limits"
         ways = ways[self._off(ways, tips[0], axes[0], above)]
+        begun = self.branch(ways)
         for number in range(1, len(tips)):
-            bend = float(np.arccos(np.clip(axes[number - 1] @ axes[number], -1, 1)))
-            count = max(4, int(np.ceil(bend / STEP)))
-            for share in np.arange(1, count + 1) / count if len(ways) else []:
-                goal = axes[number - 1] * np.sin((1 - share) * bend) + axes[number] * np.sin(share * bend)
-                goal = goal / np.linalg.norm(goal) if bend > 1e-9 else axes[number]
-                tip = tips[number - 1] + share * (tips[number] - tips[number - 1])
-                ways = self.turned(ways, goal, 4)
-                ways = ways[np.linalg.norm(tool_axes(self.machine, ways) - goal, axis=1) < self.lean]
-                ways = self.machine.with_tip(np.broadcast_to(tip, (len(ways), 3)), ways, self.length)
-                ways = ways[self.within(ways)]
-                if not len(ways):
-                    break
+            ends = tips[number - 1 : number + 1], axes[number - 1 : number + 1]
+            # Beside a pole the axes turn fast: smaller steps where none leads on.
+            led = ways[:0], begun[:0]
+            for finer in (1, 16) if len(ways) else ():
+                if not len(led[0]):
+                    led = self._along(ways, begun, *ends, finer)
+            ways, begun = led
             if not len(ways):
                 here = len(self.solutions(tips[number], axes[number]))
                 return "no way leads on to a point" if here else "a point has no solution inside travel and limits"
-        ways = ways[self._off(ways, tips[-1], axes[-1], above)]
-        return None if len(ways) else "no way comes off the part"
+        kept = self._off(ways, tips[-1], axes[-1], above)
+        if not kept.any():
+            return "no way comes off the part"
+        stayed = self.branch(ways) == begun
+        return None if (kept & stayed).any() else "all ways lead through a pole to its other side"
+
+    def _along(self, q: Floats, begun: Floats, tips: Floats, axes: Floats, finer: int) -> tuple[Floats, Floats]:
+        """From one point to the next: the tip straight, the tool axis in its plane. Which poses lead there, and where."""
+        bend = float(np.arccos(np.clip(axes[0] @ axes[1], -1, 1)))
+        count = max(4, int(np.ceil(bend / STEP))) * finer
+
+        def goal(share: float) -> Floats:
+            if bend < 1e-9:
+                return axes[1]
+            made = axes[0] * np.sin((1 - share) * bend) + axes[1] * np.sin(share * bend)
+            return made / np.linalg.norm(made)
+
+        for share in np.arange(1, count + 1) / count:
+            before = q
+            q = self.turned(before, goal(share), 3)
+            q = self.machine.with_tip(
+                np.broadcast_to(tips[0] + share * (tips[1] - tips[0]), (len(q), 3)), q, self.length
+            )
+            kept = np.linalg.norm(tool_axes(self.machine, q) - goal(share), axis=1) < self.lean
+            half = goal(share - 0.5 / count)
+            kept &= np.linalg.norm(tool_axes(self.machine, (before + q) / 2) - half, axis=1) < self.lean
+            kept &= self.within(q) & (self.sense(q) == self.sense(before))
+            q, begun = q[kept], begun[kept]
+            if not len(q):
+                break
+        return q, begun
 
     def _off(self, q: Floats, tip: Floats, axis: Floats, above: float) -> Floats:
         """Whether the tool can stand `above` as it is turned."""

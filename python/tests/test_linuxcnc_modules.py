@@ -42,7 +42,14 @@ def turned(roll: float, pitch: float, yaw: float) -> Floats:
     (sa, sb, sc), (ca, cb, cc) = np.sin(np.radians([roll, pitch, yaw])), np.cos(np.radians([roll, pitch, yaw]))
     about_x = np.array([[1, 0, 0], [0, ca, -sa], [0, sa, ca]])
     about_y = np.array([[cb, 0, sb], [0, 1, 0], [-sb, 0, cb]])
-    return np.array([[cc, -sc, 0], [sc, cc, 0], [0, 0, 1]]) @ about_y @ about_x
+    about_z = np.array([[cc, -sc, 0], [sc, cc, 0], [0, 0, 1]])
+    return np.asarray(about_z @ about_y @ about_x)
+
+
+def leaning(rng: np.random.Generator, most: float) -> Floats:
+    """A tool axis that leans about X and Y by so many degrees at most."""
+    roll, pitch = rng.uniform(-most, most, 2).tolist()
+    return turned(roll, pitch, 0)[:, 2]
 
 
 @dataclass
@@ -72,13 +79,13 @@ class Chain:
 
 @dataclass
 class Poses:
-    """A machine file whose words are the pose: `say` draws what is said beside it (an axis that stands), and `goal` a tip
-    in the part with a tool axis; `pose` is X, Y, Z, A, B and C of the module where the file's axes stand so."""
+    """A machine file whose words are the pose, X, Y and Z of it where the tip is in the part, but for `shift`: `say` draws
+    what is said beside the file (an axis that stands), `goal` a tip in the part with a tool axis."""
 
     text: str
     goal: Callable[[np.random.Generator], tuple[Floats, Floats]]
     say: Callable[[np.random.Generator], list[str]] = lambda rng: []
-    pose: Callable[[dict[str, float]], list[float]] = lambda at: [at.get(letter, 0.0) for letter in "XYZABC"]
+    shift: tuple[float, float, float] = (0, 0, 0)
     branch: int = 0
 
 
@@ -208,8 +215,10 @@ def scara() -> Law:
     d = {"D1": 490.0, "D2": 340.0, "D3": 50.0, "D4": 250.0, "D5": 60.0, "D6": 45.0}
     high, far = d["D1"] + d["D3"] - d["D5"], d["D2"] + d["D4"]
     # Z goes down, so that a control that added the tool's length would go deeper.
+    tool = f'gauge = [{far + d["D6"]}, 0, {high}]\nlength_axis = "none"\n'
     text = (
-        f'chain = "[w b A B Z C (S) t]"\n[workpiece]\nmount = [0, 0, {high}]\n[tool]\ngauge = [{far + d["D6"]}, 0, {high}]\nlength_axis = "none"\n'
+        f'chain = "[w b A B Z C (S) t]"\n[workpiece]\nmount = [0, 0, {high}]\n[tool]\n'
+        + tool
         + turns("A", "[0, 0, 1]", [0, 0, 0], 170)
         + turns("B", "[0, 0, 1]", [d["D2"], 0, 0], 150)
         + "[axis.Z]\nlinear = [0, 0, -1]\ntravel = [-400, 400]\nmax_feed = 20000\n"
@@ -271,7 +280,7 @@ def puma() -> Law:
         + ACCURACY
         + "[solution]\nstart = { A = 0, B = -20, C = 10, V = 40 }\n"
     )
-    low, high = [-60, -60, -20, -80, 25, -80], [60, 0, 50, 80, 100, 80]
+    low, high = [-60.0, -60, -20, -80, 25, -80], [60.0, 0, 50, 80, 100, 80]
     chain = Chain(text, "ABCUVW", low, high, "siemens", nose=tuple(nose), axis=tuple(along))
     # About where the arm is with its joints in the middle.
     middle = np.array([466.0, 115, -287])
@@ -329,23 +338,22 @@ def puma() -> Law:
     )
 
     def goal(rng: np.random.Generator) -> tuple[Floats, Floats]:
-        lean = turned(*rng.uniform(-14, 14, 2), 0) @ np.eye(3)[2]
-        return rng.uniform([600, -150, -120], [720, 150, 20]), lean
+        return rng.uniform([600, -150, -120], [720, 150, 20]), leaning(rng, 14)
 
     return Law("pumakins", d, 6, chain, Poses(pose, goal, lambda rng: [f"axis.C.indexed={rng.uniform(-30, 30):.6f}"]))
 
 
 def hexapod() -> Law:
-    """That of the library: six struts, in the frame of its joints; the module's offsets are none then."""
+    """That of the library: six struts. The pose is the tip's, as the spindle's nose is 50 mm below its platform; with that
+    offset the module counts from 50 mm below the frame too, and the library's part lies 1,000 mm below it."""
     text = re.sub(r"^name .*", "", (CHECKOUT / "machines/hexapod.toml").read_text(), count=1, flags=re.MULTILINE)
     text = text.replace("[control.linuxcnc]", "[control.linuxcnc]\ndecimals = 6\nrotary_decimals = 6")
 
     def goal(rng: np.random.Generator) -> tuple[Floats, Floats]:
-        lean = turned(*rng.uniform(-12, 12, 2), 0) @ np.eye(3)[2]
-        return rng.uniform([-80, -80, 230], [80, 80, 330]), lean
+        return rng.uniform([-80, -80, 230], [80, 80, 330]), leaning(rng, 12)
 
     say = lambda rng: [f"axis.C.indexed={rng.uniform(-9, 9):.6f}"]  # noqa: E731
-    return Law("genhexkins", {}, 6, None, Poses(text, goal, say))
+    return Law("genhexkins", {"spindle-offset": 50}, 6, None, Poses(text, goal, say, (0, 0, -1000 + 50)))
 
 
 MAKERS: dict[str, Callable[[], Law]] = {
@@ -444,21 +452,27 @@ def drive_ranges(law: Law, poses: Poses, rng: np.random.Generator, machine: Path
     worst, count = 0.0, 0
     for _ in range(rounds(30)):
         said = [word for setting in poses.say(rng) for word in ("--set", setting)]
-        write_cl(machine.with_name("part.cls"), [poses.goal(rng) for _ in range(3)], 5)
+        goals = [poses.goal(rng) for _ in range(3)]
+        write_cl(machine.with_name("part.cls"), goals, 5)
         summary = ["--summary", "part.json", "--tool-length", "0"]
         run = post("part.cls", "-m", machine.name, "-o", "part.ngc", *summary, *said, folder=machine.parent)
         assert run.returncode == 0, run.stderr
         motions = rows(machine, "part.ngc", *said)
-        stands = [{letter: float(row[letter]) for letter in "XYZABC" if row.get(letter)} for row in motions]
-        theirs = np.array([law.inverse(poses.pose(stand), poses.branch) for stand in stands])
+        tips = np.array([[float(row[f"tip_{each}"]) for each in "xyz"] for row in motions])
+        angles = [[float(row.get(letter) or 0) for letter in "ABC"] for row in motions]
+        theirs = np.array(
+            [law.inverse([*(tip + poses.shift), *turn], poses.branch) for tip, turn in zip(tips, angles, strict=True)]
+        )
         cut = np.array([row["kind"] == "feed" for row in motions])
+        met = [float(np.linalg.norm(tips[cut] - tip, axis=1).min()) for tip, _ in goals]
+        assert max(met) < POSTED, f"points that are not met by {max(met)}"
         for drive in json.loads(machine.with_name("part.json").read_text())["drives"]:
             values = theirs[:, int(drive["name"][-1])]
             # The way to the first position, which begins where nobody knows, is in no range.
             ends = (drive["min"], drive["max"])
             off = max(float(np.nanmin(np.abs(values - end))) for end in ends)
             off = max(off, ends[0] - float(values[cut].min()), float(values[cut].max()) - ends[1])
-            assert off < POSTED, f"{drive}: the module has {values} at {stands}"
+            assert off < POSTED, f"{drive}: the module has {values} at {tips}, {angles}"
             worst, count = max(worst, off), count + 2
     return worst, count
 

@@ -26,7 +26,7 @@ pytest.importorskip("tomllib", reason="Python 3.11 reads machine files")
 
 from oracle.machine import Machine  # noqa: E402
 from oracle.program import Motion, Reader  # noqa: E402
-from oracle.ways import Search  # noqa: E402
+from oracle.ways import SPARE, Search  # noqa: E402
 from oracle.worlds import KINDS, Maker  # noqa: E402
 
 SHARES = np.linspace(0, 1, 9)
@@ -328,7 +328,7 @@ def stands_against(found: Case) -> str | None:
     def inside(q: Floats) -> Floats:
         kept = np.ones(len(q), bool)
         for limit in found.limits:
-            kept &= limit.passed(found.machine, q) <= 0
+            kept &= limit.passed(found.machine, q) <= -SPARE
         return kept
 
     search = Search(found.machine, found.travel, inside, found.length, math.radians(LEAN))
@@ -373,7 +373,7 @@ def judged(folder: Path, seed: int, number: int) -> Verdict:
             verdict.against[re.sub(r"cut \d: ", "", why) if why else "nothing"] += 1
             verdict.needless = "" if why else f"case {number}: {said}"
         else:
-            verdict.against["of a way off the part: not searched"] += 1
+            verdict.against[f"off the part, not searched: {', '.join(sorted(verdict.reasons))}"] += 1
         return verdict
     verdict.wrong = next((f"case {number}: {wrong}" for wrong in wrongs(found, text)), "")
     counts.update({"posted": 1, "with words": bool(found.words.said()), "with limits": bool(found.limits)})

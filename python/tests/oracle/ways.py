@@ -1,6 +1,6 @@
 """Whether a machine can make a cut inside its travel and limits: searched from many places, by the test's own kinematics.
 
-What is found exists; that nothing is found says that no such way starts at any of the places that were looked at.
+What is found exists, with a little to spare; that nothing is found says that no such way starts at any of the places that were looked at.
 """
 
 from __future__ import annotations
@@ -20,6 +20,8 @@ SEEDS = {0: 1, 1: 361, 2: 41, 3: 13}
 """Places on the travel of each rotary axis that a search starts from, by how many there are."""
 EXACT = 1e-5
 """Tool axes that differ by less are the same (unit vectors): CL files have nine decimals, and beside a pole their root."""
+SPARE = 0.01
+"""What a way has to spare before the end of a travel, mm and degrees: at the very end words are rounded."""
 STEP = 0.01
 """Way of a tool axis between two looks, rad."""
 
@@ -52,7 +54,7 @@ class Search:
         for place, axis in enumerate(self.machine.axes):
             low, high = self.travel[axis.name]
             shown = axis.shown(q[:, place])
-            kept &= (shown >= low - 1e-6) & (shown <= high + 1e-6)
+            kept &= (shown >= low + SPARE) & (shown <= high - SPARE)
         return kept
 
     def turned(self, q: Floats, goal: Floats, steps: int) -> Floats:

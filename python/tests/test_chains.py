@@ -259,7 +259,7 @@ def wrongs(found: Case, text: str) -> Iterator[str]:
                 yield f"{motion.line}: {axis.name} at {shown.min():.3f} to {shown.max():.3f}, travel {low} to {high}"
         for limit in found.limits:
             by = float(np.max(limit.passed(found.machine, q[-1:] if motion.rapid else q)))
-            if by > 0.01:
+            if motion is not motions[0][0] and by > 0.01:
                 yield f"{motion.line}: a limit is passed by {by:.3f}"
     cutting = [(motion, q) for motion, q in motions if not motion.rapid]
     cuts = []

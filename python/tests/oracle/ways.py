@@ -1,6 +1,7 @@
 """Whether a machine can make a cut inside its travel and limits: searched from many places, by the test's own kinematics.
 
-What is found exists, with a little to spare; that nothing is found says that no such way starts at any of the places that were looked at.
+What is found exists, with a little to spare; that nothing is found says that no such way starts at any of the places that
+were looked at.
 """
 
 from __future__ import annotations

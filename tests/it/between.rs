@@ -147,3 +147,38 @@ fn an_operation_is_told_its_tool_and_its_feed() {
         assert!(text.contains(told), "{told}: {text}");
     }
 }
+
+/// Three rotary axes, of which only two point the tool: what the slides do under a kept tip is bounded for them too. At A-90
+/// the slides of the table and of the head lie along each other, and go to their ends and beyond.
+#[test]
+fn slides_that_come_to_lie_in_one_plane_between_the_words_are_told() {
+    let machine = "name = \"planer\"\nchain = \"[w Y' A' b Z X C B (S) t]\"\n\
+        workpiece = { mount = [0, 0, 0] }\ntool = { gauge = [0, 0, 341] }\n\
+        axis.Y = { linear = \"Y\", travel = [-1000, 1000] }\n\
+        axis.A = { rotary = \"X\", point = [0, 0, 0], travel = [-400, 400] }\n\
+        axis.Z = { linear = \"Z\", travel = [-1000, 1000] }\n\
+        axis.X = { linear = \"X\", travel = [-1000, 1000] }\n\
+        axis.C = { rotary = \"Z\", point = [0, 0, 493], travel = [-400, 400] }\n\
+        axis.B = { rotary = \"Y\", point = [0, 0, 419], travel = [-400, 400], reversed = true }\n\
+        control = { leave = { along = \"tool\", distance = 40.0 }, dialect = \"fanuc\", tcp = \"control\" }\n\
+        accuracy = { tolerance = 0.005 }\n";
+    let cl = "LOADTL/1\nSPINDL/5000,CLW\nFEDRAT/800,MMPM\n\
+        GOTO/-41.254754140,-13.025890880,-4.003166520,0.573954443,0.711404006,-0.405562126\n\
+        GOTO/-15.763069000,12.109624000,9.448606000,0.253667246,0.932692494,0.256393527\nFINI\n";
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [("m.toml", machine), ("p.cls", cl)] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let run = post_in(folder.path(), &["-q", "-m", "m.toml", "p.cls", "--tool-length=121.15"]);
+    assert_eq!(run.code, 1, "{}", run.err);
+    let told = "between the words the linear axes of planer cannot keep the tip on its line";
+    assert!(run.err.contains("error[out-of-reach]") && run.err.contains(told), "{}", run.err);
+    // A program of somebody else's that asks for it.
+    let program = "%\nO1\nG21 G17 G40 G80 G90 G94\nG49\nT1 M6\nS5000 M3\nG54\nG0 A-93.656 B-26.667 C3.046\n\
+        G43.4 H1 X-28.509 Y-0.458 Z2.723\nG1 X-25.322 Y2.684 Z4.404 A-88.565 B-23.916 C2.616 F800.\nM30\n%\n";
+    fs::write(folder.path().join("p.nc"), program).unwrap();
+    let words = ["verify", "p.nc", "-m", "m.toml", "--against", "p.cls", "--tool-length=121.15"];
+    let run = post_in(folder.path(), &words);
+    let told = "between the words the linear axes come to lie in one plane";
+    assert!(run.err.contains("error[out-of-reach]") && run.err.contains(told), "{}", run.err);
+}

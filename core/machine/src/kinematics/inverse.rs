@@ -65,6 +65,7 @@ fn numeric_form(
     chain: &Chain,
     freedom: &Freedom,
     quills: bool,
+    sliding: Option<Linear>,
 ) -> Result<SolutionMethod, NoClosedForm> {
     let Freedom { rotary, still, held, .. } = freedom;
     let slides = |joint: &usize| !chain.joints()[*joint].rotary;
@@ -97,7 +98,7 @@ fn numeric_form(
     let linear = linear.into_iter().filter(|joint| !surplus.contains(joint)).collect();
     let arm = Arm::new(chain, &free).map(Box::new);
     let framed = surplus::framed(chain, &surplus).map(Box::new);
-    Ok(SolutionMethod::Numeric { linear, free, planar, surplus, framed, arm })
+    Ok(SolutionMethod::Numeric { linear, sliding, free, planar, surplus, framed, arm })
 }
 
 /// No formula knows these rotary axes: more than two that point a tool which turns, or other than three of one with a
@@ -127,6 +128,8 @@ pub(super) enum SolutionMethod {
     Numeric {
         free: Vec<usize>,
         linear: Vec<usize>,
+        /// The three linear axes that place the tip, wherever the rotary ones stand, if nothing else slides.
+        sliding: Option<Linear>,
         planar: Option<Box<Planar>>,
         surplus: Vec<usize>,
         /// The chain with an edge on its tool, where the turn about a tool that turns is one of them.
@@ -153,18 +156,21 @@ impl Solver {
     pub fn with(chain: Chain, freedom: &Freedom) -> Result<Self, NoClosedForm> {
         let held = freedom.held;
         let form = match Linear::new(&chain, &freedom.still, &freedom.seconds) {
-            Ok(_) if searched(&chain, &freedom.rotary) => {
+            Ok(linear) if searched(&chain, &freedom.rotary) => {
                 if !freedom.seconds.is_empty() {
                     return Err(NoClosedForm::RotaryAxes { joints: freedom.rotary.clone() });
                 }
-                numeric_form(&chain, freedom, false)?
+                let sliding = Some(linear).filter(|linear| !linear.more);
+                numeric_form(&chain, freedom, false, sliding)?
             }
             Ok(linear) => {
                 let (orientation, idle) = Orientation::new(&chain, &freedom.rotary, &held)?;
                 SolutionMethod::Closed { orientation, idle, linear }
             }
             // Rotary axes have to place the tip as well.
-            Err(NoClosedForm::FewAxes { quills, .. }) => numeric_form(&chain, freedom, quills)?,
+            Err(NoClosedForm::FewAxes { quills, .. }) => {
+                numeric_form(&chain, freedom, quills, None)?
+            }
             Err(lack) => return Err(lack),
         };
         let standing = match freedom.seconds.is_empty() && !freedom.still.is_empty() {
@@ -251,7 +257,9 @@ impl Solver {
             SolutionMethod::Closed { .. } => {
                 self.standing.as_ref().map(|standing| (&standing.0, &standing.1))
             }
-            SolutionMethod::Numeric { .. } => None,
+            SolutionMethod::Numeric { sliding, .. } => {
+                sliding.as_ref().map(|linear| (&self.chain, linear))
+            }
         }
     }
 
@@ -339,6 +347,24 @@ impl Solver {
                 numeric::approach(&self.chain, linear, tip, joints);
                 Ok(())
             }
+        }
+    }
+
+    /// [`Solver::place`] by the three linear axes that do it alone ([`Solver::sliding`]); elsewhere by all there are.
+    ///
+    /// # Errors
+    /// [`Unreachable::Linear`] if the linear axes span no volume at these angles.
+    pub(super) fn slide(
+        &self,
+        tip: Vector3<f64>,
+        joints: &mut Joints,
+        turns: &Turns,
+    ) -> Result<(), Unreachable> {
+        match &self.form {
+            SolutionMethod::Numeric { sliding: Some(linear), .. } => {
+                linear.place(&self.chain, tip, joints, turns)
+            }
+            _ => self.place(tip, joints, turns),
         }
     }
 

@@ -132,7 +132,7 @@ impl<'a> TcpBlock<'a> {
         let turns = self.chain.turns(&joints);
         let axis = self.chain.pose(&joints, &turns).axis;
         let tip = self.tips[0] + (self.tips[1] - self.tips[0]) * share;
-        solver.place(tip + axis * self.along, &mut joints, &turns).ok()?;
+        solver.slide(tip + axis * self.along, &mut joints, &turns).ok()?;
         Some(joints)
     }
 

@@ -133,8 +133,11 @@ impl AxisLimitCheck {
             Interpolation::Axes => {}
             Interpolation::Tip(Curve::Straight) | Interpolation::TipAndAxis => {
                 if !stays_inside(machine, motion, bend)
-                    && let Some(slides) = slides(motion, &Joints::default(), f64::INFINITY)
+                    && let Some(slides) = kept_tip(motion, &Joints::default(), f64::INFINITY)
                 {
+                    let Some(slides) = slides else {
+                        return flat_between(motion);
+                    };
                     for joint in 0..machine.axes.len() {
                         if slides.least[joint] <= slides.most[joint] {
                             least[joint] = least[joint].min(slides.least[joint]);
@@ -451,9 +454,25 @@ fn stays_inside(machine: &Machine, motion: &Motion, bend: Option<f64>) -> bool {
     })
 }
 
-/// How the linear axes go while the control keeps the tip; none if nothing turns, or nothing is known of it. Times
-/// below `enough` minutes are looked into no closer.
+/// Linear axes that lie in one plane on the way would have to go without end to keep the tip. At rapid the control's own
+/// way is anybody's guess.
+fn flat_between(motion: &Motion) -> Option<AxisFault> {
+    let message = "between the words the linear axes come to lie in one plane, and cannot keep the tip on its line";
+    (motion.kind != MotionKind::Rapid).then(|| AxisFault {
+        code: "out-of-reach",
+        message: message.to_owned(),
+        by: 0.0,
+    })
+}
+
+/// [`kept_tip`], where that is known.
 fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<LinearMotion> {
+    kept_tip(motion, slowness, enough).flatten()
+}
+
+/// How the linear axes go while the control keeps the tip; none if nothing turns, or others than they place the tip. None
+/// in that if they cannot follow, or nothing is proven of it. Times below `enough` minutes are looked into no closer.
+fn kept_tip(motion: &Motion, slowness: &Joints, enough: f64) -> Option<Option<LinearMotion>> {
     let solver: &Solver = &motion.state.solver;
     let chain = solver.chain();
     let turns =
@@ -464,7 +483,7 @@ fn slides(motion: &Motion, slowness: &Joints, enough: f64) -> Option<LinearMotio
         return None;
     }
     let (from, to) = (chain.traced(&motion.from.joints), chain.traced(&motion.to.joints));
-    TcpBlock::new(solver, 0.0, &from, &to)?.slides(slowness, enough)
+    Some(TcpBlock::new(solver, 0.0, &from, &to)?.slides(slowness, enough))
 }
 
 /// Where the axes stand at each of the [`looks`] places along a curve, its end the last: up to where they cannot

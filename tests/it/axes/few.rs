@@ -139,3 +139,88 @@ fn points_of_a_vertical_lathes_own_axes_are_posted() {
         }
     }
 }
+
+/// A turning centre without Y, whose head B swings the tool: drawn along X, across the part. X goes to `least` mm.
+fn swinging(least: f64) -> String {
+    format!(
+        "name = \"turning centre\"\nchain = \"[w C' b Z X B (S) t]\"\n\
+         [tool]\ngauge = [400, 0, 300]\naxis = [1, 0, 0]\nlength_axis = \"X\"\n\
+         [axis.C]\nrotary = [0, 0, 1]\npoint = [0, 0, 0]\ncyclic = true\nmax_feed = 36000\n\
+         [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-600, 900]\nmax_feed = 40000\n\
+         [axis.X]\nlinear = [1, 0, 0]\ntravel = [{least}, 300]\nmax_feed = 40000\n\
+         [axis.B]\nrotary = [0, 1, 0]\npoint = [600, 0, 300]\ntravel = [-120, 120]\nmax_feed = 10800\n\
+         [control]\ndialect = \"fanuc\"\ntcp = \"post\"\nleave = {{ distance = 40, then = {{ Z = \"max\" }} }}\n\
+         [accuracy]\ntolerance = 0.005\naxis_tolerance = 0.05\n"
+    )
+}
+
+/// A cut over a dome of 60 mm, or through a bowl, across the line of C: from one point to the next `step` mm, the tool along
+/// its normal, so that B swings through upright there.
+fn across_the_pole(step: f64, first: f64, azimuth: f64, bowl: bool) -> Vec<Pose> {
+    let (sine, cosine) = libm::sincos(azimuth.to_radians());
+    let side = if bowl { -1.0 } else { 1.0 };
+    let count = (2.0 * first / step).round() as i32;
+    let at = |place: i32| {
+        let x = first - step * f64::from(place);
+        let (lean, up) = (side * x / 60.0, libm::sqrt(3600.0 - x * x) / 60.0);
+        let tip = V::new(cosine * x, sine * x, 100.0 + side * 60.0 * (up - 1.0));
+        Pose { tip, axis: V::new(cosine * lean, sine * lean, up), ..Pose::default() }
+    };
+    (0..=count).map(at).collect()
+}
+
+/// Through the centre X goes below zero; where it ends C turns by 180° on the spot, B swinging the tool upright there. Points
+/// 5 mm apart are posted as dense ones are, whether one of them is the centre or none.
+#[test]
+fn a_head_that_swings_goes_through_the_centre() {
+    // Upright the head has X at -600 mm on the line of C.
+    for (least, turns) in [(-900.0, false), (-602.0, true)] {
+        let machine = swinging(least);
+        for (step, first) in [(5.0, 20.0), (5.0, 22.5), (7.0, 24.0), (0.5, 20.0)] {
+            for bowl in [false, true] {
+                let points = across_the_pole(step, first, 37.0, bowl);
+                let mut text = cl().rapid(points[0].tip + points[0].axis * 30.0, points[0].axis);
+                for point in &points {
+                    text = text.cut(point.tip, point.axis);
+                }
+                let last = points.last().unwrap();
+                let text = text.rapid(last.tip + last.axis * 30.0, last.axis);
+                let made = run(&machine, &text.end(), "80");
+                assert_eq!(made.code, 0, "{least} {step} {first} {bowl}: {}", made.err);
+                let model = Model::from_table(machine.parse().unwrap(), None);
+                let all = blocks(&made.out, &["C", "Z", "X", "B"], &[]);
+                let reached: Vec<Pose> =
+                    all.iter().map(|block| model.pose(&block.words, 80.0)).collect();
+                let mut next = 0;
+                for point in &points {
+                    let hit = |pose: &Pose| {
+                        (pose.tip - point.tip).norm() < 0.006
+                            && angle(pose.axis, point.axis) < 0.051
+                    };
+                    let found = reached[next..].iter().position(hit);
+                    next += found.unwrap_or_else(|| panic!("{point:?}\n{}", made.out));
+                }
+                let angles = || all.iter().map(|block| block.words[0]);
+                let way = angles().fold(f64::MIN, f64::max) - angles().fold(f64::MAX, f64::min);
+                assert_eq!(way > 90.0, turns, "{least}: C goes {way}");
+            }
+        }
+    }
+}
+
+/// A tool that leans on the centre line cannot have C turned there: where X ends, the cut is refused.
+#[test]
+fn no_tool_that_leans_is_turned_on_the_centre_line() {
+    let lean = V::new(libm::sin(0.35), 0.0, libm::cos(0.35));
+    let mut text = cl();
+    for x in [20.0, 10.0, 0.0, -10.0, -20.0] {
+        text = text.cut(V::new(x, 0.0, 100.0), lean);
+    }
+    let text = text.rapid(V::new(-20.0, 0.0, 100.0) + lean * 30.0, lean).end();
+    // With the tool leaning X stands by 280 mm times a sine before where it stands with it upright.
+    let at_centre = -600.0 + 280.0 * libm::sin(0.35);
+    let said = run(&swinging(at_centre - 5.0), &text, "80");
+    assert!(said.code == 1 && said.err.contains("over-travel"), "{}", said.err);
+    let made = run(&swinging(-900.0), &text, "80");
+    assert_eq!(made.code, 0, "{}", made.err);
+}

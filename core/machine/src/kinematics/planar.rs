@@ -473,6 +473,17 @@ impl Solver {
         }
     }
 
+    /// `joints` with the rotary joints behind the carrier as the tool axis of `pose` asks for, on the turns next to theirs: the
+    /// carrier turns on the spot, and the tool stays. Of other chains `joints` as they are.
+    pub fn turned_on_the_spot(&self, pose: &Pose, joints: &Joints) -> Joints {
+        let Some(planar) = self.planar_form() else {
+            return *joints;
+        };
+        let mut turned = *joints;
+        planar.orientation.follow(pose, &mut turned);
+        unwound(&self.chain, &turned, joints)
+    }
+
     /// Where on a straight way of the tip (mm, part frame) two solutions come nearest to one another, of a chain whose two
     /// linear axes a rotary one carries; the other rotary joints stand as in `joints`.
     pub fn meeting(&self, way: [Vector3<f64>; 2], joints: &Joints) -> Option<Meeting> {

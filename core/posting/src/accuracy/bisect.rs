@@ -147,8 +147,8 @@ fn stuck(piece: &NodeMove<'_>) -> Option<LineariseError> {
 /// A rotary axis turns by no less on the spot, radians: elsewhere points on the way serve.
 const TURNS: f64 = 1e-3;
 
-/// Where a piece passes so close by the centre line that a rotary axis turns there by whatever its ends ask for: the nodes
-/// before and after that turn.
+/// Where a piece passes so close by the centre line that a rotary axis turns there by whatever its ends ask for, the others
+/// going along with it: the nodes before and after that turn. None where the tool leans there.
 fn on_the_spot(piece: &NodeMove<'_>) -> Option<Result<Vec<PathNode>, PlacementError>> {
     let (from, to, placer) = (piece.from, piece.to, piece.placer);
     let (first, last) = (&from.trace.joints, &to.trace.joints);
@@ -162,7 +162,12 @@ fn on_the_spot(piece: &NodeMove<'_>) -> Option<Result<Vec<PathNode>, PlacementEr
     let target = piece.target(meeting.share);
     let ends = [(meeting.share > 0.0, first), (meeting.share < 1.0, last)];
     let ends = ends.into_iter().filter(|(inside, _)| *inside);
-    Some(ends.map(|(_, joints)| placer.settled(target, t, joints)).collect())
+    let turned = |joints| placer.solver().turned_on_the_spot(&target, joints);
+    let nodes: Result<Vec<PathNode>, _> =
+        ends.map(|(_, joints)| placer.settled(target, t, &turned(joints))).collect();
+    // A tool that leans there does not stay where it is.
+    let leans = |node: &PathNode| node.axis_error >= piece.tolerances.axis;
+    (!nodes.as_ref().is_ok_and(|nodes| nodes.iter().any(leans))).then_some(nodes)
 }
 
 /// The node at a share of a piece: on the exact inverse solution, unless the axes jump there. `holds` says whether

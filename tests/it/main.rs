@@ -9,6 +9,7 @@ mod batch;
 #[cfg(target_os = "linux")]
 mod between;
 mod bounds;
+mod bowls;
 mod browser;
 mod calibrate;
 mod ceilings;

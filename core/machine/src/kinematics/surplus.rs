@@ -64,6 +64,18 @@ impl Solver {
     /// The solutions of a robot's arm by formulas, each verified, the joints in front of it standing as in `last`; of a
     /// tool that turns those at turns about it all around. None where the chain is no such arm.
     pub(super) fn of_arm(&self, pose: &Pose, last: &Joints, tolerance: f64) -> Vec<Joints> {
+        self.all_around(pose, last, tolerance, SPINS)
+    }
+
+    /// The solutions of a robot's arm by formulas, each verified, the joints in front of it standing as in `last`; of a tool
+    /// that turns those at `spins` turns about it, evenly all around. None where the chain is no such arm.
+    pub fn all_around(
+        &self,
+        pose: &Pose,
+        last: &Joints,
+        tolerance: f64,
+        spins: usize,
+    ) -> Vec<Joints> {
         let SolutionMethod::Numeric { arm: Some(arm), .. } = &self.form else {
             return Vec::new();
         };
@@ -75,8 +87,8 @@ impl Solver {
             }
             Some(_) => arm.solutions(&self.chain, pose, last, &mut found),
             None => {
-                for spin in 0..SPINS {
-                    let angle = TAU * spin as f64 / SPINS as f64;
+                for spin in 0..spins {
+                    let angle = TAU * spin as f64 / spins as f64;
                     let (sine, cosine) = libm::sincos(angle);
                     let edge = turn(edge, pose.axis, sine, cosine);
                     arm.solutions(&self.chain, &Pose { edge, ..*pose }, last, &mut found);

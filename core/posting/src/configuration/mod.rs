@@ -11,6 +11,7 @@ mod cost;
 mod cycle_time;
 mod ease;
 mod full_turns;
+mod lattice;
 mod lengths;
 mod metric;
 mod pending_element;

@@ -34,6 +34,9 @@ impl Route<'_> {
         if self.try_positions(line, motion).map_err(DroppedPoint::Point)? {
             return Ok(());
         }
+        if self.try_lattice(line, motion) {
+            return Ok(());
+        }
         let found = match pushed {
             Ok(found) => found,
             Err(unreachable) => {
@@ -74,27 +77,16 @@ impl Route<'_> {
             return Ok(false);
         }
         // The points since the last rapid, this one last.
-        let settled = usize::from(self.anchored);
-        let off_part = |kind: ArrivalKind| kind != ArrivalKind::Cut;
         let back = match motion.pace {
             MoveFeed::Rapid => self.trellis.layers.len(),
-            _ => match (settled..self.trellis.layers.len())
-                .rev()
-                .find(|layer| off_part(self.trellis.layers[*layer].kind))
-            {
+            _ => match self.last_off_part() {
                 Some(layer) => layer,
                 None if self.trellis.layers.is_empty() => 0,
                 None => return Ok(false),
             },
         };
-        let mut points: Vec<(u64, StraightMove)> = Vec::new();
-        while self.trellis.layers.len() > back {
-            if let Some(layer) = self.trellis.pop() {
-                points.insert(0, (layer.line, layer.motion));
-            }
-        }
+        let mut points = self.take_back(back);
         points.push((line, *motion));
-        self.mark = 0;
         let before = self.setting;
         for other in alternatives {
             self.setting = self.setting_for(&other)?;
@@ -125,6 +117,24 @@ impl Route<'_> {
             }
         }
         Ok(false)
+    }
+
+    /// The last layer that is not settled and not come to in a cut.
+    pub(super) fn last_off_part(&self) -> Option<usize> {
+        let layers = &self.trellis.layers;
+        let mut waiting = (usize::from(self.anchored)..layers.len()).rev();
+        waiting.find(|layer| layers[*layer].kind != ArrivalKind::Cut)
+    }
+
+    /// Takes back the layers from `back` on: their lines and moves.
+    pub(super) fn take_back(&mut self, back: usize) -> Vec<(u64, StraightMove)> {
+        let mut points = Vec::new();
+        while self.trellis.layers.len() > back {
+            points.extend(self.trellis.pop().map(|layer| (layer.line, layer.motion)));
+        }
+        points.reverse();
+        self.mark = 0;
+        points
     }
 
     /// Other positions of the redundant axes than those at `held`, the nearest first.

@@ -251,6 +251,7 @@ impl<'a> Route<'a> {
         self.near = *self.stands_at();
         self.trellis.layers.clear();
         self.trellis.states.clear();
+        self.trellis.wide = false;
         self.rewound.clear();
         self.anchored = false;
         self.mark = 0;
@@ -346,6 +347,8 @@ impl<'a> Route<'a> {
     /// Why the point cannot be reached, or the path not go on to it; it is left out.
     #[inline]
     pub(crate) fn add(&mut self, line: u64, motion: &StraightMove) -> Result<(), DroppedPoint> {
+        // The next pass is begun with the usual search.
+        self.trellis.wide &= motion.pace != MoveFeed::Rapid;
         let pushed = self.push(line, motion);
         if pushed.is_err() || !self.alive() {
             self.find_way(line, motion, pushed)?;

@@ -27,7 +27,9 @@ impl Route<'_> {
         };
         let waiting = layers.len() - usize::from(self.anchored);
         let look_ahead = self.look_ahead();
-        if layer.count == 1 && !self.trellis.eased(layer.latitude.0) && !self.tries_positions {
+        // The pass of an arm may be begun anew: one way that is left may be the wrong one.
+        let begun_anew = self.tries_positions || self.present().solver().spins();
+        if layer.count == 1 && !self.trellis.eased(layer.latitude.0) && !begun_anew {
             if self.anchored && layers.len() == 2 {
                 self.settle_only();
             } else {

@@ -144,7 +144,7 @@ impl ChoiceAxes {
     }
 
     /// Of solutions those that the axes can stand at.
-    fn keep_inside(
+    pub(super) fn keep_inside(
         &self,
         solver: &Solver,
         found: Vec<Joints>,

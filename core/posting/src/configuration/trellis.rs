@@ -4,6 +4,7 @@
 
 use super::cost::PathCost;
 use super::cycle_time::{DriveLimits, PathClock};
+use super::lattice::MOST_OF_LATTICE;
 use super::metric::TravelMeasure;
 use super::solution::{AxisSolution, ChoiceAxes, SolutionSummary};
 use super::surplus::{ALONG, HEADING};
@@ -172,6 +173,8 @@ pub(crate) struct Trellis {
     /// Time under the rule `cycle-time` that the program asks for the cut to the newest layer and for the one that is
     /// being pushed, s.
     asked: [f64; 2],
+    /// The pass is looked for on a lattice of all turns about the tool: see [`super::lattice`].
+    pub(super) wide: bool,
 }
 
 /// Where a point is wanted.
@@ -205,6 +208,7 @@ impl Trellis {
             cone: libm::sin(freedom).max(post_machine::kinematics::POLE),
             freedom,
             asked: [0.0; 2],
+            wide: false,
         }
     }
 
@@ -269,6 +273,9 @@ impl Trellis {
                 return Err(unreachable);
             }
         };
+        if self.wide && kind != ArrivalKind::Cut {
+            self.axes.lattice(placer.solver(), &target, &last, &mut stands);
+        }
         let on_pole = found.latitude.0 <= self.cone && placer.solver().pole_joint().is_some();
         if kind != ArrivalKind::Cut {
             // A tie goes to the larger value of the axis nearest to the tool.
@@ -572,6 +579,8 @@ impl Trellis {
     ) {
         if placer.solver().planar() {
             self.go_on_in_plane(placer, motion, before, judge);
+        } else if self.wide {
+            self.lattice_on(placer, motion, before, judge);
         } else if placer.solver().surplus().is_empty() {
             self.search_on(placer, &pose(motion), before, judge);
         } else {
@@ -835,9 +844,10 @@ impl Trellis {
 
     /// Keeps the cheapest states of the newest layer, if there are too many.
     fn thin(&mut self, first: usize) {
-        if self.states.len() - first > MOST_STATES {
+        let most = if self.wide { MOST_OF_LATTICE } else { MOST_STATES };
+        if self.states.len() - first > most {
             self.states[first..].sort_by(|a, b| a.cost.order(&b.cost));
-            self.states.truncate(first + MOST_STATES);
+            self.states.truncate(first + most);
         }
     }
 

@@ -234,6 +234,10 @@ fn reach(rows: &mut NamedValues, reach: &ReachableCone) {
         let _ = write!(told, " (azimuth {}°)", number(azimuth, 0));
     }
     rows.row("reach", &told);
+    if !reach.within.is_empty() {
+        let limits: Vec<String> = reach.within.iter().map(|limit| format!("`{limit}`")).collect();
+        rows.row("", format_args!("where {} holds", limits.join(", ")));
+    }
     if let Some(grid) = reach.searched_every_deg {
         let told = format!(
             "searched with the tip on the part origin, every {}°: at least so much",
@@ -343,7 +347,15 @@ fn legs(rows: &mut NamedValues, of_machine: &LegsReport) {
 }
 
 fn volume(rows: &mut NamedValues, volume: &Volume, length: f64) {
+    let limits: Vec<String> = volume.limited_by.iter().map(|limit| format!("`{limit}`")).collect();
+    let within = limits.join(", ");
     let (Some(least), Some(most)) = (volume.least, volume.most) else {
+        if !within.is_empty() {
+            rows.row(
+                "travel of the tip",
+                format_args!("none that was found: {within} leaves nothing"),
+            );
+        }
         return;
     };
     let [x, y, z] = volume.axis.map(|value| number(value, 5));
@@ -362,6 +374,9 @@ fn volume(rows: &mut NamedValues, volume: &Volume, length: f64) {
         format!("{name} {} to {}", number(least[index], 3), number(most[index], 3))
     });
     rows.row("", format_args!("{} mm", spans.collect::<Vec<_>>().join(", ")));
+    if !within.is_empty() {
+        rows.row("", format_args!("as far as what must hold between the axes leaves it: {within}"));
+    }
 }
 
 fn readings(readings: &[AxisReadout]) -> String {

@@ -188,7 +188,7 @@ fn checked(keep: &str, more: &[&str]) -> Run {
 #[test]
 fn check_tells_what_a_limit_leaves_of_the_travel() {
     let told = |keep: &str| {
-        let run = checked(keep, &[]);
+        let run = checked(keep, &["--tool-length", "250"]);
         format!("{}{}", run.out, run.err)
     };
     let text = told("Z > -700 + 2 * abs(B)");
@@ -218,4 +218,33 @@ fn what_a_limit_cannot_say_is_refused_with_its_line() {
     }
     let twice = checked("Z > B", &["--set", "parameters.B=3"]);
     assert!(twice.err.contains("B is an axis and a parameter"), "{}", twice.err);
+}
+
+/// The box of tips is what limits between the axes leave, to a thousandth; it says which do. With the tool upright the tip of the
+/// fork stands 900 mm above Z.
+#[test]
+fn check_tells_where_the_tip_goes_within_limits() {
+    let told = |keep: &str| {
+        let run = checked(keep, &[]);
+        let text = run.out.replace("\n                  ", " ");
+        let row = text.lines().find(|line| line.starts_with("travel of the tip")).unwrap();
+        row.to_owned()
+    };
+    let all = told("Z > -1300 + 2 * abs(B)");
+    assert!(all.ends_with("X -1000 to 1000, Y -750 to 750, Z -50 to 950 mm"), "{all}");
+    for (keep, left) in [
+        ("Z > -300 + 2 * abs(B)", "X -1000 to 1000, Y -750 to 750, Z 600 to 950 mm"),
+        ("Z + abs(X) < -100", "X -850 to 850, Y -750 to 750, Z -50 to 800 mm"),
+        ("X + Y + Z < -2000", "X -1000 to -300, Y -750 to -50, Z -50 to 650 mm"),
+    ] {
+        let row = told(keep);
+        let within = "as far as what must hold between the axes leaves it:";
+        assert!(row.ends_with(&format!("{left} {within} `{keep}`")), "{row}");
+    }
+    let none = told("Z > 100 + abs(B)");
+    assert!(none.contains("none that was found: `Z > 100 + abs(B)` leaves nothing"), "{none}");
+    // What names rotary axes alone says where the tool can point.
+    let cone = checked("abs(B) < 30", &[]).out;
+    assert!(cone.contains("tilt from +Z in all azimuths: 30°"), "{cone}");
+    assert!(cone.contains("where `abs(B) < 30` holds"), "{cone}");
 }

@@ -11,6 +11,7 @@ mod control;
 mod errors;
 mod leaving;
 mod legs;
+mod limited_box;
 mod limits;
 mod nominal;
 mod pointing;
@@ -196,6 +197,12 @@ fn warnings(
     warnings.extend(in_metres(machine));
     // A tool that cannot stand upright is not asked for on the part origin: a live tool across a lathe never is there.
     if let Some(volume) = volume.filter(|_| reach.ways_upright > 0) {
+        for beyond in &volume.origin_beyond {
+            warnings.push(format!(
+                "with the tool upright and {} mm long, its tip on the part origin: {beyond}",
+                number(probe.length(), 3)
+            ));
+        }
         for out in &volume.origin_out {
             warnings.push(format!(
                 "with the tool upright and {} mm long, the part origin is out of travel: {} would stand at {:.3}, its travel is {:.3} to {:.3}",
@@ -257,7 +264,10 @@ fn axis_warnings(axis: &Axis, slides: bool) -> Vec<String> {
 /// What the inverse does not find.
 fn inverse_warnings(probe: &Probe<'_>, round_trip: &RoundTrip) -> Vec<String> {
     let mut warnings = Vec::new();
-    if let Some([ways @ 0..3, _]) = probe.ways_by_search() {
+    // A lathe of two axes turns what lies in their plane, and is asked for nothing else.
+    let spindle = &probe.machine().spindle;
+    let turns = spindle.surface_speed && probe.free().is_empty();
+    if let Some([ways @ 0..3, _]) = probe.ways_by_search().filter(|_| !turns) {
         warnings.push(format!(
             "while the tool keeps its direction the tip can go {}: most programs ask for more, and are refused where they do",
             match ways {

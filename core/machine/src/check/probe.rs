@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Vector3;
 
 use super::settings;
+use crate::dependent_limit::DependentLimit;
 use crate::description::{Machine, Pole, Positions, SHARE_AT_POLES};
 use crate::halton;
 use crate::kinematics::orientation::angle;
@@ -276,8 +277,15 @@ impl<'a> Probe<'a> {
     }
 
     /// How many full turns of the rotary values of `joints` lie inside travel; an axis that turns without end
-    /// counts once.
+    /// counts once. None where a limit between rotary axes alone does not hold.
     pub fn turns(&self, joints: &Joints) -> usize {
+        let mut limits = self.rotary_limits().peekable();
+        if limits.peek().is_some()
+            && let Some(inside) = self.inside(joints)
+            && !limits.all(|limit| limit.holds(&inside))
+        {
+            return 0;
+        }
         let mut count = 1;
         for place in self.free() {
             if let Some([least, most]) = self.machine.axes[place].travel {
@@ -287,6 +295,13 @@ impl<'a> Probe<'a> {
             }
         }
         count
+    }
+
+    /// Limits that name rotary axes alone: they say where the tool can point, wherever the tip is.
+    pub(super) fn rotary_limits(&self) -> impl Iterator<Item = &'a DependentLimit> {
+        let axes = &self.machine.axes;
+        let rotary = |limit: &&DependentLimit| limit.joints().all(|joint| axes[joint].joint.rotary);
+        self.machine.limits.iter().filter(rotary)
     }
 
     /// The rotary values of `joints` on the turns inside travel that are nearest to rest; none if an axis has

@@ -49,6 +49,9 @@ pub struct ReachableCone {
     /// Solutions for the tool upright in the part, within `axis_tolerance` and at the positions of index axes, as posting
     /// takes them; an axis that may stand anywhere counts once, and so does one on every full turn.
     pub ways_upright: usize,
+    /// Limits between rotary axes that are kept, as they are written. Those that name linear axes too depend on where the tip
+    /// is: [`super::LimitReport`].
+    pub within: Vec<String>,
     /// Cells of the sphere for a picture.
     #[serde(skip)]
     pub map: DirectionMap,
@@ -78,6 +81,7 @@ impl ReachableCone {
         if reach.freedom < 2 && reach.ways_upright > 0 {
             reach.tilt_in_all_azimuths_deg = Some(0.0);
         }
+        reach.within = probe.rotary_limits().map(|limit| limit.text().to_owned()).collect();
         let name = |place: usize| probe.machine().axes[place].name.clone();
         reach.at_positions_alone = probe.at_positions_alone().into_iter().map(name).collect();
         reach

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
+use super::limited_box::LimitedBox;
 use super::pointing::AxisReadout;
 use super::probe::Probe;
 use crate::kinematics::Joints;
@@ -15,12 +16,17 @@ pub struct Volume {
     pub axis: [f64; 3],
     /// Where the rotary axes stand for it.
     pub rotary: Vec<AxisReadout>,
-    /// Least tip, mm; none where rotary axes place the tip too.
+    /// Least tip, mm; none where rotary axes place the tip too, or limits between the axes leave nothing.
     pub least: Option<[f64; 3]>,
-    /// Largest tip, mm; none where rotary axes place the tip too.
+    /// Largest tip, mm; none where the least is none.
     pub most: Option<[f64; 3]>,
+    /// Limits between the axes that take something off what the travel alone would leave: `[[limit]]` as it is written, and
+    /// legs by their names.
+    pub limited_by: Vec<String>,
     /// Axes that stand outside their travel with the tip on the part origin.
     pub origin_out: Vec<OutsideTravel>,
+    /// What says of the limits between the axes that do not hold with the tip on the part origin.
+    pub origin_beyond: Vec<String>,
 }
 
 /// A value outside travel.
@@ -48,18 +54,13 @@ impl Volume {
         let machine = probe.machine();
         let linear: Vec<usize> =
             (0..machine.axes.len()).filter(|place| !machine.axes[*place].joint.rotary).collect();
-        let mut least = Vector3::repeat(f64::INFINITY);
-        let mut most = Vector3::repeat(f64::NEG_INFINITY);
-        // The tip is linear in the linear axes, so its extremes are at corners.
-        for corner in 0..1usize << linear.len() {
-            let mut joints = at_origin;
-            for (bit, place) in linear.iter().enumerate() {
-                joints[*place] = probe.span(*place)[corner >> bit & 1];
-            }
-            let tip = probe.chain().forward(&joints).tip;
-            least = least.inf(&tip);
-            most = most.sup(&tip);
-        }
+        let LimitedBox { ends, limited_by } = LimitedBox::of(probe, &at_origin, &linear);
+        let [least, most] = [0, 1].map(|end| {
+            let ends = ends.filter(|_| probe.closed_form())?;
+            Some(ends[end].into())
+        });
+        let beyond = machine.limits.iter().filter(|limit| !limit.holds(&at_origin));
+        let origin_beyond = beyond.map(|limit| limit.told(machine, &at_origin)).collect();
         let origin_out = linear
             .iter()
             .filter_map(|place| {
@@ -86,21 +87,24 @@ impl Volume {
         Some(Self {
             axis: axis.into(),
             rotary,
-            least: probe.closed_form().then(|| least.into()),
-            most: probe.closed_form().then(|| most.into()),
+            least,
+            most,
+            limited_by: if probe.closed_form() { limited_by } else { Vec::new() },
             origin_out,
+            origin_beyond,
         })
     }
 }
 
 /// Axis values with the tip on the part origin and the tool along `axis`, as posting may take them: the first of which
-/// the linear ones are inside travel too, else the first.
+/// the linear ones are inside travel too, and what must hold between the axes holds, else the first.
 fn first(probe: &Probe<'_>, axis: Vector3<f64>) -> Option<Joints> {
     let stands = probe.stands(axis);
     let inside = |joints: &&Joints| {
         let axes = probe.machine().axes.iter().zip(joints.iter());
         axes.filter(|(axis, _)| !axis.joint.rotary)
             .all(|(axis, value)| passed(axis.travel, *value, 1e-6).is_none())
+            && probe.machine().limits.iter().all(|limit| limit.holds(joints))
     };
     let best = stands.iter().find(inside).or(stands.first());
     best.copied()

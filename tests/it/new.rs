@@ -22,8 +22,13 @@ const CLASSES: &[&str] = &[
     "nutating-head",
     "lathe-xzc",
     "mill-turn",
+    "lathe-xz",
+    "tangential-knife",
     "robot",
+    "robot-on-rail",
+    "scara",
     "linear-delta",
+    "hexapod",
 ];
 
 fn folder() -> TempDir {
@@ -36,6 +41,9 @@ fn post_in(folder: &Path, arguments: &[&str], answers: &str) -> Run {
 
 /// A small job that every class can make: the tool upright.
 const JOB: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/0,0,50\nFEDRAT/100,MMPM\nGOTO/0,0,10\nGOTO/20,5,10\nEND\nFINI\n";
+
+/// What a lathe can make that turns.
+const TURNED: &str = "UNITS/MM\nLOADTL/1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/30,0,50\nFEDRAT/0.2,MMPR\nGOTO/30,0,10\nGOTO/40,0,5\nEND\nFINI\n";
 
 /// Lengths in metres, as DH tables have them, are no arm of a fraction of a millimetre.
 #[test]
@@ -65,19 +73,25 @@ fn every_class_passes_the_check_and_makes_a_program() {
         let check = post_in(folder.path(), &["check", "mill.toml"], "");
         assert_eq!((check.code, check.err.as_str()), (0, ""), "{class}");
         assert!(check.out.contains("warnings          none"), "{}", check.out);
-        let kind = class.replace("four-axis-a", "rotary table A");
+        let kind = class.replace("lathe-xzc", "rotary table C");
+        let kind = kind.replace("lathe-xz", "two-axis").replace("tangential-knife", "head C");
+        let kind =
+            kind.replace("robot-on-rail", "rotary axes at once").replace("hexapod", "leg J5");
+        let kind = kind.replace("scara", "A carries B");
+        let kind = kind.replace("four-axis-a", "rotary table A");
         let kind = kind.replace("four-axis-b", "rotary table B");
         let kind =
             kind.replace("nutating-head", "nutating").replace("table-table-nutating", "nutating");
-        let kind = kind.replace("lathe-xzc", "rotary table C").replace("mill-turn", "head-table");
+        let kind = kind.replace("mill-turn", "head-table");
         let kind = kind.replace("robot", "six-axis");
         let kind = kind.replace("linear-delta", "leg J2");
         let kind = ["-ac", "-bc", "-ba"].iter().fold(kind, |kind, end| kind.replace(end, ""));
         assert!(check.out.contains(&kind), "{kind} is not in:\n{}", check.out);
-        fs::write(folder.path().join("part.cls"), JOB).unwrap();
+        let job = if *class == "lathe-xz" { TURNED } else { JOB };
+        fs::write(folder.path().join("part.cls"), job).unwrap();
         let posted = post_in(
             folder.path(),
-            &["-q", "-m", "mill.toml", "--tool-length", "80", "part.cls", "-o", "-"],
+            &["-q", "--verify", "-m", "mill.toml", "--tool-length", "80", "part.cls", "-o", "-"],
             "",
         );
         assert_eq!(posted.code, 0, "{class}: {}", posted.err);
@@ -252,7 +266,7 @@ fn what_cannot_be_is_refused() {
             "which of the two",
         ),
         (vec!["--class", "three-axis", "--dialect", "a\"b"], 2, "letters and digits"),
-        (vec!["--class", "hexapod"], 2, "possible values"),
+        (vec!["--class", "octopod"], 2, "possible values"),
     ] {
         let mut all = vec!["new", "mill"];
         all.extend(&arguments);
@@ -282,7 +296,8 @@ fn flags_are_used_or_refused_in_every_class() {
             let before = fs::read_to_string(&path).unwrap();
             fs::remove_file(&path).unwrap();
             // What a class has anyway changes nothing.
-            let value = if (*class, flag) == ("mill-turn", "--tcp") { "post" } else { value };
+            let kept = ["mill-turn", "hexapod"].contains(class) && flag == "--tcp";
+            let value = if kept { "post" } else { value };
             let mut all = arguments.to_vec();
             all.extend([flag, value]);
             let run = post_in(folder.path(), &all, "");

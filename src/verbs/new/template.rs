@@ -37,10 +37,20 @@ pub enum Class {
     LatheXzc,
     /// A lathe with a milling head: X, Y, Z, the work spindle C and B.
     MillTurn,
+    /// A lathe of two axes, X and Z, that turns.
+    LatheXz,
+    /// A knife or saw that C turns along its cut, over a flat bed.
+    TangentialKnife,
     /// A robot's arm with parallel shoulder and spherical wrist: A B C U V W are its axes 1 to 6.
     Robot,
+    /// Such an arm on a rail, Y.
+    RobotOnRail,
+    /// An arm that turns about two upright lines, A and B, with an upright Z.
+    Scara,
     /// A delta: three carriages on upright rails, and rods to a platform that stays upright.
     LinearDelta,
+    /// Six struts between a frame and a platform; its words are X, Y, Z and the angles of the tool A and B.
+    Hexapod,
 }
 
 /// The seven lengths of an arm, as they are published for it, mm: their names and what they are, the arm stretched straight up.
@@ -158,6 +168,26 @@ const ARM: [Rotary; 6] = [
     arm_joint("W", "[0, 0, 1]", "[\"a1 + a2\", \"b\", \"c1 + c2 + c3\"]", [-400.0, 400.0]),
 ];
 
+const fn scara_joint(name: &'static str, point: &'static str, travel: [f64; 2]) -> Rotary {
+    Rotary {
+        name,
+        direction: "[0, 0, 1]",
+        point,
+        travel: Some(travel),
+        measure: "any point on its line, the arm stretched along X",
+    }
+}
+
+const fn platform_angle(name: &'static str, direction: &'static str, end: f64) -> Rotary {
+    Rotary {
+        name,
+        direction,
+        point: "[0, 0, \"gauge + joint\"]",
+        travel: Some([-end, end]),
+        measure: "the middle of the joints on the platform",
+    }
+}
+
 impl Class {
     fn chain(self) -> &'static str {
         match self {
@@ -172,20 +202,27 @@ impl Class {
             Self::HeadTableBa => "[w A' b X Y Z B (S) t]",
             Self::LatheXzc => "[w C' b Z X (S) t]",
             Self::MillTurn => "[w C' b Z X Y B (S) t]",
+            Self::LatheXz => "[w b Z X t]",
+            Self::TangentialKnife => "[w b X Y Z C t]",
             Self::Robot => "[w b A B C U V W (S) t]",
+            Self::RobotOnRail => "[w b Y A B C U V W (S) t]",
+            Self::Scara => "[w b A B Z (S) t]",
+            Self::Hexapod => "[w b X Y Z C B A (S) t]",
             Self::LinearDelta => "[w b X Y Z (S) t]",
         }
     }
 
     /// X goes from the line of the work spindle to one side, and its words are diameters.
     fn is_lathe(self) -> bool {
-        matches!(self, Self::LatheXzc | Self::MillTurn)
+        matches!(self, Self::LatheXz | Self::LatheXzc | Self::MillTurn)
     }
 
     fn linear(self) -> &'static [&'static str] {
         match self {
-            Self::LatheXzc => &["X", "Z"],
+            Self::LatheXz | Self::LatheXzc => &["X", "Z"],
             Self::Robot => &[],
+            Self::RobotOnRail => &["Y"],
+            Self::Scara => &["Z"],
             _ => &["X", "Y", "Z"],
         }
     }
@@ -193,8 +230,11 @@ impl Class {
     /// Where the gauge point stands with every axis at zero; parameters may stand in it.
     fn gauge_point(self) -> String {
         match self {
-            Self::LatheXzc | Self::MillTurn => format!("[{LATHE_X}, 0, \"gauge\"]"),
-            Self::Robot => "[\"a1 + a2\", \"b\", \"c1 + c2 + c3 + c4\"]".to_owned(),
+            _ if self.is_lathe() => format!("[{LATHE_X}, 0, \"gauge\"]"),
+            Self::Scara => "[\"upper + fore\", 0, \"gauge\"]".to_owned(),
+            Self::Robot | Self::RobotOnRail => {
+                "[\"a1 + a2\", \"b\", \"c1 + c2 + c3 + c4\"]".to_owned()
+            }
             _ => "[0, 0, \"gauge\"]".to_owned(),
         }
     }
@@ -206,7 +246,7 @@ impl Class {
                 ["[0, 0, 1]", "along the work spindle; across it [1, 0, 0] and length_axis = \"X\""]
             }
             Self::MillTurn => ["[1, 0, 0]", "from the tip to the holder, B as it shows 90"],
-            Self::Robot => [
+            Self::Robot | Self::RobotOnRail => [
                 "[0, 0, -1]",
                 "from the tip to the holder: here the spindle goes on along the flange",
             ],
@@ -221,7 +261,7 @@ impl Class {
 
     fn rotary(self) -> Vec<Rotary> {
         match self {
-            Self::ThreeAxis | Self::LinearDelta => vec![],
+            Self::ThreeAxis | Self::LatheXz | Self::LinearDelta => vec![],
             Self::FourAxisA => vec![table("A", "[1, 0, 0]")],
             Self::FourAxisB => vec![table("B", "[0, 1, 0]")],
             Self::TableTableAc => vec![TABLE_C, tilting("A", "[1, 0, 0]", [-120.0, 30.0])],
@@ -236,7 +276,20 @@ impl Class {
             Self::NutatingHead => vec![TABLE_C, swivel("B", "[0, 1, 1]", [0.0, 180.0])],
             Self::LatheXzc => vec![WORK_SPINDLE],
             Self::MillTurn => vec![WORK_SPINDLE, MILLING_HEAD],
-            Self::Robot => ARM.into(),
+            Self::TangentialKnife => vec![Rotary {
+                measure: "line about which the knife turns: its edge, or the middle of it, belongs there",
+                ..TABLE_C
+            }],
+            Self::Robot | Self::RobotOnRail => ARM.into(),
+            Self::Scara => vec![
+                scara_joint("A", "[0, 0, 0]", [-130.0, 130.0]),
+                scara_joint("B", "[\"upper\", 0, 0]", [-145.0, 145.0]),
+            ],
+            Self::Hexapod => vec![
+                platform_angle("C", "[0, 0, 1]", 10.0),
+                platform_angle("B", "[0, 1, 0]", 20.0),
+                platform_angle("A", "[1, 0, 0]", 20.0),
+            ],
         }
     }
 
@@ -250,32 +303,39 @@ impl Class {
 
     /// It has any rotary axis.
     pub fn turns(self) -> bool {
-        !matches!(self, Self::ThreeAxis | Self::LinearDelta)
+        !matches!(self, Self::ThreeAxis | Self::LatheXz | Self::LinearDelta)
     }
 
     /// Its control may keep the tip, which takes words X, Y and Z.
     pub fn keeps_tips(self) -> bool {
-        self.turns() && !matches!(self, Self::LatheXzc | Self::Robot)
+        let keeps_none = matches!(self, Self::LatheXzc | Self::TangentialKnife | Self::Scara);
+        self.turns() && !keeps_none && !self.has_arm()
     }
 
-    /// Who keeps the tip, if nobody says so. The tool of a mill-turn is drawn across the part, and its length is put along Z.
+    /// Who keeps the tip, if nobody says so. The tool of a mill-turn is drawn across the part, and its length is put along Z;
+    /// struts are no axes whose positions a program could say.
     pub fn usual_tcp(self) -> Tcp {
-        if self == Self::MillTurn { Tcp::Control } else { Tcp::Post }
+        let keeps = matches!(self, Self::MillTurn | Self::Hexapod);
+        if keeps { Tcp::Control } else { Tcp::Post }
     }
 
     /// The lengths of an arm stand in its file.
     pub fn has_arm(self) -> bool {
-        self == Self::Robot
+        matches!(self, Self::Robot | Self::RobotOnRail)
     }
 
     /// The height `gauge` stands in its file.
     pub fn has_gauge(self) -> bool {
-        self != Self::Robot
+        !self.has_arm()
     }
 
     /// mm, the tip in cuts, if nobody says another.
     pub fn usual_tolerance(self) -> f64 {
-        if self == Self::Robot { 0.05 } else { 0.005 }
+        match self {
+            Self::Robot | Self::RobotOnRail => 0.05,
+            Self::Scara | Self::TangentialKnife => 0.02,
+            _ => 0.005,
+        }
     }
 
     /// The distance `gauge + pivot` stands in its file.
@@ -303,6 +363,8 @@ impl Class {
             "X" if self.is_lathe() => Some([-LATHE_X - 20.0, 20.0]),
             "Y" if self.is_lathe() => Some([-100.0, 100.0]),
             "X" | "Y" if self == Self::LinearDelta => Some([-150.0, 150.0]),
+            "X" | "Y" if self == Self::Hexapod => Some([-200.0, 200.0]),
+            "Y" if self == Self::RobotOnRail => Some([-2000.0, 2000.0]),
             "X" | "Y" => Some([-300.0, 300.0]),
             // From the upper end down to the table's face.
             "Z" => Some([-gauge.abs().max(1.0), 0.0]),
@@ -329,24 +391,38 @@ pub fn write(choices: &Choices) -> String {
     parameters(&mut line, choices);
     linear_axes(&mut line, choices);
     rotary_axes(&mut line, choices);
-    if choices.class == Class::LinearDelta {
-        carriages(&mut line);
+    match choices.class {
+        Class::LinearDelta => carriages(&mut line),
+        Class::Hexapod => struts(&mut line),
+        Class::LatheXz => work_spindle(&mut line),
+        _ => {}
     }
     control(&mut line, choices);
-    line("", "");
-    line("# [spindle]", "");
-    line(
-        "# max_speed = 12000",
-        "rpm: what the spindle can do; a CL file that asks for more is refused",
-    );
+    if choices.class != Class::LatheXz {
+        line("", "");
+        line("# [spindle]", "");
+        line(
+            "# max_speed = 12000",
+            "rpm: what the spindle can do; a CL file that asks for more is refused",
+        );
+    }
     line("", "");
     line("[accuracy]", "");
     line(&format!("tolerance = {}", choices.tolerance), "mm, the tip in cuts");
-    if choices.class == Class::Robot {
-        line("", "");
-        line("[solution]", "");
-        line("start = { C = 90, V = 90 }", "where it begins: the forearm level, the tool down");
+    if choices.class == Class::TangentialKnife {
+        line("axis_tolerance = 0.5", "degrees, the edge against its way");
     }
+    let solution = match choices.class {
+        _ if choices.class.has_arm() => {
+            ("start = { C = 90, V = 90 }", "where it begins: the forearm level, the tool down")
+        }
+        Class::Scara => ("start = { B = 90 }", "where it begins: on which side the elbow is bent"),
+        Class::TangentialKnife => ("edge = \"travel\"", "the edge leads along the cut"),
+        _ => return text,
+    };
+    line("", "");
+    line("[solution]", "");
+    line(solution.0, solution.1);
     text
 }
 
@@ -359,7 +435,7 @@ fn head(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         "",
     );
     line("#", "");
-    if choices.class == Class::Robot {
+    if choices.class.has_arm() {
         line(
             "# Positions are in mm in the machine frame, with the arm stretched straight up; here its origin is the foot of the",
             "",
@@ -405,7 +481,7 @@ fn frame_of_a_table(line: &mut impl FnMut(&str, &str), choices: &Choices) {
 
 /// Distances of the machine, where the part sits, and the tool.
 fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
-    if choices.class == Class::Robot {
+    if choices.class.has_arm() {
         return arm(line, choices);
     }
     line("[parameters]", "");
@@ -426,6 +502,16 @@ fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         line("hub   = 40", "from there to the joints on the platform");
         line("rod   = 420", "between both joints");
     }
+    if choices.class == Class::Hexapod {
+        line("frame = 670", "from the middle to the joints of the frame, square to Z");
+        line("hub   = 290", "from the middle to the joints of the platform");
+        line("joint = 50", "these over the gauge line");
+        line("rise  = 800", "those over these, all axes at zero");
+    }
+    if choices.class == Class::Scara {
+        line("upper = 350", "line of A to line of B");
+        line("fore  = 300", "line of B to the spindle");
+    }
     if asked("pivot") {
         line(
             &format!("pivot = {}", choices.pivot),
@@ -444,12 +530,27 @@ fn parameters(line: &mut impl FnMut(&str, &str), choices: &Choices) {
         true => "part origin: here the middle of the chuck's face; --mount for one job",
         false => "part origin: here the middle of the table; --mount for one job",
     };
-    line("mount = [0, 0, 0]", middle);
+    match choices.class {
+        Class::Scara => {
+            let before = "part origin: here before the arm; --mount for one job";
+            line("mount = [\"0.7 * (upper + fore)\", 0, 0]", before);
+        }
+        _ => line("mount = [0, 0, 0]", middle),
+    }
     line("", "");
     line("[tool]", "");
     line(&format!("gauge = {}", choices.class.gauge_point()), "");
     let [axis, remark] = choices.class.tool_axis();
     line(&format!("axis  = {axis}"), remark);
+    match choices.class {
+        Class::TangentialKnife => {
+            line("edge  = [1, 0, 0]", "where the knife cuts towards, C at zero");
+        }
+        Class::LatheXz => {
+            line("length_axis = \"none\"", "the tool's offsets hold its X and Z: no G43");
+        }
+        _ => {}
+    }
 }
 
 /// Lengths of an arm, a part within its reach, and the tool.
@@ -508,13 +609,16 @@ fn rotary_axes(line: &mut impl FnMut(&str, &str), choices: &Choices) {
             None => rotary.point.to_owned(),
         };
         line(&format!("point    = {point}"), rotary.measure);
-        if choices.class == Class::Robot {
+        if choices.class.has_arm() {
             line("zero     = 0", "what the control shows of it, the arm stretched straight up");
         }
         if let Some(shown) = choices.class.shown_at_zero(name) {
             line(&format!("zero     = {shown}"), "shown where it stands as drawn");
         }
         travel(line, choices, name);
+        if (choices.class, name) == (Class::Hexapod, "C") {
+            line("indexed  = 0", "a tool that turns needs no yaw");
+        }
         reversed(line, choices, name);
         line(&format!("max_feed = {}", feed(choices, name, 3600.0)), "deg/min");
     }
@@ -539,12 +643,41 @@ fn carriages(line: &mut impl FnMut(&str, &str)) {
     }
 }
 
+/// What drives the platform of a hexapod: each joint of the frame leads to two of the platform, 5° beside the gap between
+/// them.
+fn struts(line: &mut impl FnMut(&str, &str)) {
+    let angles = [(150, 95), (30, 85), (30, -25), (-90, -35), (-90, -145), (150, -155)];
+    for (leg, (frame, hub)) in angles.into_iter().enumerate() {
+        let joint = |radius: &str, angle: i32, height: &str| {
+            format!("[\"{radius} * cos({angle})\", \"{radius} * sin({angle})\", \"{height}\"]")
+        };
+        line("", "");
+        line("[[leg]]", "");
+        line(&format!("name     = \"J{leg}\""), "its drive, as the control calls it");
+        let from = joint("frame", frame, "gauge + joint + rise");
+        line(&format!("from     = {from}"), "its joint in the frame");
+        line("at       = \"A\"", "the platform");
+        let to = joint("hub", hub, "gauge + joint");
+        line(&format!("to       = {to}"), "its joint there, all axes at zero");
+        line("travel   = [\"rise - 50\", \"rise + 900\"]", "its length, joint to joint, mm");
+        line("max_feed = 15000", "mm/min");
+    }
+}
+
+/// The spindle of a lathe that turns.
+fn work_spindle(line: &mut impl FnMut(&str, &str)) {
+    line("", "");
+    line("[spindle]", "");
+    line("max_speed     = 4000", "rpm: what the spindle can do");
+    line("surface_speed = true", "it turns the part: SPINDL/SMM is G96, FEDRAT/MMPR is G95");
+}
+
 /// The control: its dialect, and what that must be told.
 fn control(line: &mut impl FnMut(&str, &str), choices: &Choices) {
     line("", "");
     line("[control]", "");
     line(&format!("dialect = \"{}\"", choices.dialect), "");
-    if choices.class == Class::Robot {
+    if choices.class.has_arm() {
         line(
             "tcp     = \"post\"",
             "axis positions: an arm has no X, Y and Z that a control could keep",

@@ -20,6 +20,9 @@ const ROUNDED: f64 = 0.0015;
 /// Share by which an axis may be faster than its largest feed, as printed feeds are rounded.
 const SHARE: f64 = 0.01;
 
+/// A block in which an axis would be so many times too fast has no time worth telling: its speed is no number to read.
+const NO_TIME: f64 = 1e6;
+
 /// Angles of one solution, radians: beside a pole they are known no better.
 const SAME: f64 = 1e-4;
 
@@ -239,11 +242,12 @@ impl AxisLimitCheck {
             true => (max_feed.to_degrees(), "°/min"),
             false => (max_feed, "mm/min"),
         };
-        let message = format!(
-            "{} would go at {:.1} {unit}, and its max_feed is {most:.1}",
-            machine.mover(joint),
-            most * factor
-        );
+        let name = machine.mover(joint);
+        let speed = match factor > NO_TIME {
+            true => "in next to no time".to_owned(),
+            false => format!("at {:.1} {unit}", most * factor),
+        };
+        let message = format!("{name} would go {speed}, and its max_feed is {most:.1} {unit}");
         Some(AxisFault { code: "max-feed", message, by: most * (factor - 1.0) })
     }
 

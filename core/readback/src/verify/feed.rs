@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use post_machine::check::number;
+
 use super::Verifier;
 use super::feed_sum::FeedTime;
 use super::place::{ToolPlace, free, way_of};
@@ -99,14 +101,16 @@ impl<C: Course> Verifier<'_, C> {
                 self.fault("feed", message, Some(motion), Some(element.line), None);
             }
             FeedVerdict::Above(feed) => {
-                let message = format!("the feed is above that of the CL file, {asked} mm/min");
+                let message =
+                    format!("the feed is above that of the CL file, {} mm/min", number(asked, 3));
                 let told = format!("{message}: {feed:.1} mm/min");
                 self.limit_fault("feed", message, told, motion, element.line, feed - asked);
             }
             FeedVerdict::Below(feed) => {
                 self.found.slower += 1;
                 let message = format!(
-                    "the feed is below that of the CL file, {asked} mm/min, and no axis asks for that"
+                    "the feed is below that of the CL file, {} mm/min, and no axis asks for that",
+                    number(asked, 3)
                 );
                 let told = format!("{message}: {feed:.1} mm/min");
                 self.limit_fault("feed", message, told, motion, element.line, asked - feed);

@@ -28,6 +28,7 @@ pub use expression::{
 };
 pub use fault::{ReadError, SyntaxFault};
 pub use inequality::{Inequality, parse_inequality};
+pub use points::is_point_list;
 pub use template::{FillFault, Template};
 
 /// What tests look into; no part of the crate's face.

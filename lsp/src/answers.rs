@@ -48,6 +48,7 @@ pub fn hover(
             let posted = document.slow.posted();
             (cl::hover::text(of, line, posted.as_deref(), machine)?, None)
         }
+        FileKind::Points => (cl::hover::of_point(line, document.slow.posted().as_deref()?)?, None),
         FileKind::Nc => {
             let program = document.slow.program();
             let map = document.path().and_then(|path| document.map.of(&path));

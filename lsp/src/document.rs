@@ -17,6 +17,8 @@ pub enum FileKind {
     Machine,
     /// A cutter-location file.
     Cl,
+    /// A list of points in the place of a CL file.
+    Points,
     /// An NC program.
     Nc,
 }
@@ -49,6 +51,9 @@ pub struct Document {
     /// Of a program the map beside it.
     pub map: Arc<MapCache>,
 }
+
+/// Endings of lists of points, and of many files besides.
+const LISTS: &[&str] = &["csv", "json"];
 
 /// Languages whose headers end like Heidenhain's programs.
 const OF_C: &[&str] = &["c", "cpp", "objc", "objcpp", "objective-c", "objective-cpp", "cuda-cpp"];
@@ -120,6 +125,9 @@ impl Document {
             }
             language if OF_C.contains(&language) => None,
             _ if cl::ENDINGS.contains(&ending) => Some(FileKind::Cl),
+            _ if LISTS.contains(&ending) => {
+                post_grammar::is_point_list(&self.now.text).then_some(FileKind::Points)
+            }
             _ if nc::ENDINGS.contains(&ending) => Some(FileKind::Nc),
             _ => None,
         }

@@ -54,7 +54,7 @@ pub fn begin(document: &Document, library: &Library, shown: &ShownMachine, to: &
     };
     background::begin(move || match kind {
         FileKind::Machine => work.derive(),
-        FileKind::Cl => work.post(),
+        FileKind::Cl | FileKind::Points => work.post(),
         FileKind::Nc => work.read_back(),
     });
 }

@@ -80,7 +80,12 @@ async function activate(context) {
       args: ["lsp", ...settings().get("arguments")],
     },
     {
-      documentSelector: [{ language: "toml" }, { language: "post-cl" }, { language: "post-nc" }],
+      documentSelector: [
+        { language: "toml" },
+        { language: "post-cl" },
+        { language: "post-nc" },
+        { pattern: "**/*.{csv,json}" },
+      ],
       initializationOptions: { machine: settings().get("machine"), toolLength: settings().get("toolLength") },
       synchronize: { configurationSection: "post" },
       middleware: {

@@ -110,7 +110,12 @@ async function activate(context) {
     "post",
     "post",
     {
-      documentSelector: [{ language: "toml" }, { language: "post-cl" }, { language: "post-nc" }],
+      documentSelector: [
+        { language: "toml" },
+        { language: "post-cl" },
+        { language: "post-nc" },
+        { pattern: "**/*.{csv,json}" },
+      ],
       initializationOptions: { machine: machine(), toolLength: settings().get("toolLength") },
       synchronize: { configurationSection: "post" },
       uriConverters: { code2Protocol: toServer, protocol2Code: fromServer },

@@ -16,12 +16,13 @@ use super::piece::ClPiece;
 use super::record::Record;
 use super::scan::{self, PlainGoto};
 use crate::fault::{ReadError, SyntaxFault};
-use crate::points::{ListForm, MOST_JSON, PointList};
+use crate::points::{ListForm, MOST_JSON, PointList, RecordPlace};
 use crate::text::excerpt;
 use memchr::{memchr_iter, memchr2, memchr3};
 use std::borrow::Cow;
 use std::io::{self, ErrorKind, Read};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Bytes asked of the input at a time: small enough to stay in the processor's cache.
 const CHUNK: usize = 256 * 1024;
@@ -72,6 +73,8 @@ pub struct ClReader<R> {
     row_text: Vec<u8>,
     row: Range<usize>,
     row_line: u64,
+    /// Where the record stands that was given last, if that is elsewhere.
+    place: Option<Arc<RecordPlace>>,
 }
 
 /// A physical line; offsets from `start`.
@@ -103,6 +106,7 @@ impl<R: Read> ClReader<R> {
             row_text: Vec::new(),
             row: 0..0,
             row_line: 1,
+            place: None,
         }
     }
 
@@ -261,13 +265,17 @@ impl<R: Read> ClReader<R> {
     /// The next record of the row that was taken last.
     fn row_record(&mut self) -> Option<Record<'_>> {
         let line = self.row_line;
-        let (statement, raw) = match self.points.as_mut()? {
+        let ((statement, place), raw) = match self.points.as_mut()? {
             PointList::Csv(list) => (list.records.next()?, self.row_text.as_slice()),
             PointList::Json { text, list } => {
                 (list.records.next()?, text.get(self.row.clone())?.as_bytes())
             }
         };
-        Some(Record { line, raw, statement })
+        self.place = place;
+        Some(match &self.place {
+            Some(place) => Record { line: place.line, raw: place.text.as_bytes(), statement },
+            None => Record { line, raw, statement },
+        })
     }
 
     /// Takes lines of a list until one says something; false: the list is over, and what follows is no list.
@@ -321,7 +329,7 @@ impl<R: Read> ClReader<R> {
             self.row_text.extend_from_slice(raw);
             self.row_line = line;
             let text = decode(&self.row_text);
-            let (taken, has_header) = (list.take(&text), list.has_header());
+            let (taken, has_header) = (list.take(&text, line), list.has_header());
             let ended = self.ended && physical.next == physical.end;
             let text = ended.then(|| text.into_owned());
             self.consume(&physical, 1);
@@ -349,7 +357,7 @@ impl<R: Read> ClReader<R> {
                 return Ok(true);
             }
             let first = self.line;
-            match list.take(text) {
+            match list.take(text, first) {
                 Ok(Some((row, line))) => (self.row, self.row_line) = (row, first + line),
                 Ok(None) => {
                     let lines = text.as_bytes()[..list.end].iter().filter(|byte| **byte == b'\n');

@@ -1,10 +1,11 @@
 //! CSV: settings, a header, and a row a line; between commas, semicolons or tabs.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::row::is_column;
 use super::setting::is_setting;
-use super::{Cell, CellFault, RowColumns, RowRecords, Settings};
+use super::{Cell, CellFault, RecordPlace, RowColumns, RowRecords, Settings};
 use crate::cl::line::number_of;
 use crate::fault::SyntaxFault;
 
@@ -34,11 +35,13 @@ pub(super) fn begins(head: &[u8]) -> bool {
     let Some(first) = lines.find(|line| !line.is_empty() && !line.starts_with('#')) else {
         return false;
     };
-    if first.contains(['/', '$']) || !first.contains(SEPARATORS) {
+    let bare = outside_quotes(first);
+    if bare.contains(['/', '$']) || !bare.contains(SEPARATORS) {
         return false;
     }
     let separator = separator(first);
-    let mut cells = first.split(separator).map(unquoted);
+    let cells: Vec<_> = cells(first, separator).collect();
+    let mut cells = cells.iter().map(AsRef::as_ref);
     let count = cells.clone().count();
     // What follows a word of a CL file may be anything: `REMARK x,y,z`.
     let name = |cell: &str| {
@@ -53,20 +56,86 @@ pub(super) fn begins(head: &[u8]) -> bool {
         || count >= 3 && cells.all(|cell| number_of(cell).is_some())
 }
 
-/// What stands between the cells of a line: a comma only if nothing else does.
-fn separator(line: &str) -> char {
-    SEPARATORS.into_iter().find(|separator| line.contains(*separator)).unwrap_or(',')
+/// A line of the beginning of a file names the columns x, y and z.
+pub(super) fn heads(head: &str) -> bool {
+    head.lines().any(|line| {
+        let names: Vec<_> = cells(line, separator(line)).collect();
+        let has = |column: &&str| names.iter().any(|name| name.eq_ignore_ascii_case(column));
+        ["x", "y", "z"].iter().all(has)
+    })
 }
 
-/// A cell without blanks and quotation marks around it.
-fn unquoted(cell: &str) -> &str {
+/// What stands between the cells of a line: a comma only if nothing else does.
+fn separator(line: &str) -> char {
+    let bare = outside_quotes(line);
+    SEPARATORS.into_iter().find(|separator| bare.contains(*separator)).unwrap_or(',')
+}
+
+/// The line without what stands in quotation marks.
+fn outside_quotes(line: &str) -> Cow<'_, str> {
+    if !line.contains('"') {
+        return Cow::Borrowed(line);
+    }
+    line.split('"').step_by(2).collect::<String>().into()
+}
+
+/// A cell without blanks and quotation marks around it; two of these inside are one.
+fn unquoted(cell: &str) -> Cow<'_, str> {
     let cell = cell.trim();
     let inside = cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"'));
-    inside.map_or(cell, str::trim)
+    match inside.map(str::trim) {
+        None => Cow::Borrowed(cell),
+        Some(inside) if inside.contains("\"\"") => Cow::Owned(inside.replace("\"\"", "\"")),
+        Some(inside) => Cow::Borrowed(inside),
+    }
+}
+
+/// A cell begins with a quotation mark, and the one that closes it is missing.
+fn is_open(cell: &str) -> bool {
+    cell.starts_with('"') && cell.matches('"').count() % 2 == 1
+}
+
+/// The cells of a line.
+fn cells(line: &str, separator: char) -> impl Iterator<Item = Cow<'_, str>> {
+    Cells { line, separator, at: Some(0) }.map(|span| unquoted(&line[span]))
+}
+
+/// Where the cells of a line stand in it, without the blanks around them.
+fn spans(line: &str, separator: char) -> impl Iterator<Item = Range<usize>> {
+    Cells { line, separator, at: Some(0) }.map(|Range { start, end }| {
+        let cell = &line[start..end];
+        let blank = cell.len() - cell.trim_start().len();
+        start + blank..start + blank.max(cell.trim_end().len())
+    })
+}
+
+/// Where the cells of a line stand in it: a separator in quotation marks parts nothing.
+struct Cells<'l> {
+    line: &'l str,
+    separator: char,
+    /// Where the next begins; none behind the last.
+    at: Option<usize>,
+}
+
+impl Iterator for Cells<'_> {
+    type Item = Range<usize>;
+
+    fn next(&mut self) -> Option<Range<usize>> {
+        let begin = self.at.take()?;
+        let rest = &self.line[begin..];
+        let quoted = rest.trim_start_matches([' ', '\t']).starts_with('"');
+        let mut inside = false;
+        let parts = |sign: char| {
+            inside ^= quoted && sign == '"';
+            sign == self.separator && !inside
+        };
+        let length = rest.find(parts);
+        self.at = length.map(|length| begin + length + self.separator.len_utf8());
+        Some(begin..length.map_or(self.line.len(), |length| begin + length))
+    }
 }
 
 fn cell_of(text: &str) -> Cell {
-    let text = unquoted(text);
     if text.is_empty() {
         return Cell::Empty;
     }
@@ -78,21 +147,12 @@ fn cell_of(text: &str) -> Cell {
     }
 }
 
-/// Where the cells of a line stand in it, without the blanks around them.
-fn spans(line: &str, separator: char) -> impl Iterator<Item = Range<usize>> {
-    line.split(separator).map(move |cell| {
-        let begin = cell.as_ptr() as usize - line.as_ptr() as usize;
-        let blank = cell.len() - cell.trim_start().len();
-        begin + blank..begin + blank.max(cell.trim_end().len())
-    })
-}
-
 impl CsvList {
-    /// Takes a line; what it says stands in [`Self::records`].
+    /// Takes the line of this number; what it says stands in [`Self::records`].
     ///
     /// # Errors
-    /// It cannot be read; its line is not known here.
-    pub(crate) fn take(&mut self, line: &str) -> Result<(), SyntaxFault> {
+    /// It cannot be read; the fault does not name the line.
+    pub(crate) fn take(&mut self, line: &str, number: u64) -> Result<(), SyntaxFault> {
         let text = line.trim_start_matches('\u{FEFF}');
         if text.trim().is_empty() || text.trim_start().starts_with('#') {
             return Ok(());
@@ -100,30 +160,41 @@ impl CsvList {
         let separator =
             self.table.as_ref().map_or_else(|| separator(text), |table| table.separator);
         // Ahead of the header spreadsheets leave rows that were deleted; behind it such a row is a point that is missing.
-        if !self.has_header() && text.split(separator).all(|cell| unquoted(cell).is_empty()) {
+        if !self.has_header() && cells(text, separator).all(|cell| cell.is_empty()) {
             return Ok(());
         }
-        self.take_cells(text, separator).map_err(|fault| {
+        if let Some(open) =
+            spans(text, separator).last().filter(|last| is_open(&text[last.clone()]))
+        {
+            let fault = SyntaxFault::new(text, open, "a quotation mark is still open");
+            let help =
+                "a text in quotation marks ends on its line; one inside of it is written twice";
+            return Err(fault.help(help));
+        }
+        self.take_cells(text, separator, number).map_err(|fault| {
             fault.told(text, |cell| spans(text, separator).nth(cell).unwrap_or(0..text.len()))
         })
     }
 
-    fn take_cells(&mut self, text: &str, separator: char) -> Result<(), CellFault> {
+    fn take_cells(&mut self, text: &str, separator: char, line: u64) -> Result<(), CellFault> {
         if let Some(table) = &self.table {
             self.cells.clear();
-            self.cells.extend(text.split(separator).map(cell_of));
+            self.cells.extend(cells(text, separator).map(|cell| cell_of(&cell)));
             let row = table.columns.row(&self.cells)?;
             self.records.row(row, &self.settings);
             return Ok(());
         }
-        let names = text.split(separator).map(unquoted);
+        let names: Vec<_> = cells(text, separator).collect();
+        let mut names = names.iter().map(AsRef::as_ref);
         let first = names.clone().next().unwrap_or_default();
         // Spreadsheets fill a line up with separators.
         let told = names.clone().filter(|name| !name.is_empty()).count();
         let heads = names.clone().skip(1).any(is_column);
         if told <= 2 && !heads && number_of(first).is_none() {
-            let value = text.split(separator).nth(1).map_or(Cell::Empty, cell_of);
-            return self.settings.take(first, &value);
+            let value = names.nth(1).map_or(Cell::Empty, cell_of);
+            self.settings.take(first, &value)?;
+            self.settings.put(first, RecordPlace { line, text: text.to_owned() });
+            return Ok(());
         }
         if is_setting(first) && !heads {
             let message = format!("`{first}` has {} values", told - 1);

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::{Cell, CellFault, RowColumns, RowRecords, SHOWN, Settings};
+use super::row::is_column;
+use super::{Cell, CellFault, RecordPlace, RowColumns, RowRecords, SHOWN, Settings};
 use crate::fault::SyntaxFault;
 
 /// Longest list, bytes: it is read in one piece.
@@ -26,8 +27,12 @@ pub(crate) struct JsonList {
     columns: Option<RowColumns>,
     /// The next point begins here; none: the points are over, or were not found yet.
     next: Option<usize>,
+    /// Of a list that has its columns one by one: where the next value of each begins.
+    tracks: Vec<usize>,
     /// The list was looked over.
     begun: bool,
+    /// Line of the file on which it begins.
+    first: u64,
     /// Bytes whose lines are counted, and line ends in them.
     counted: usize,
     lines: u64,
@@ -71,11 +76,16 @@ fn wrong<T>(span: Range<usize>, message: impl Into<String>, help: impl Into<Stri
 
 impl JsonList {
     /// Takes the next point of `text`, which is the whole list: what it says stands in [`Self::records`]. Gives where in the
-    /// text it stands, and its line counted from 0; none after the last.
+    /// text it stands, and its line counted from 0; none after the last. The text begins on the line `first` of its file.
     ///
     /// # Errors
     /// It cannot be read; `line` of the fault counts from 0.
-    pub(crate) fn take(&mut self, text: &str) -> Result<Option<(Range<usize>, u64)>, SyntaxFault> {
+    pub(crate) fn take(
+        &mut self,
+        text: &str,
+        first: u64,
+    ) -> Result<Option<(Range<usize>, u64)>, SyntaxFault> {
+        self.first = first;
         let taken = self.take_next(text);
         match taken {
             Ok(span) => Ok(span.map(|span| {
@@ -91,8 +101,11 @@ impl JsonList {
             self.begun = true;
             // A fault in it ends the list.
             self.end = text.len();
-            self.next = Some(self.look_over(text)?);
+            self.next = self.look_over(text)?;
             self.records.settings(&self.settings);
+        }
+        if !self.tracks.is_empty() {
+            return self.take_across(text);
         }
         let Some(at) = self.next.take() else {
             return Ok(self.close());
@@ -118,8 +131,61 @@ impl JsonList {
         (!told).then_some(self.end..self.end)
     }
 
-    /// Reads all but the points: gives where these begin.
-    fn look_over(&mut self, text: &str) -> Read<usize> {
+    /// Takes the next value of each column.
+    fn take_across(&mut self, text: &str) -> Read<Option<Range<usize>>> {
+        let (mut cells, mut spans, mut over) = (Vec::new(), Vec::new(), 0);
+        for track in &mut self.tracks {
+            let mut cursor = JsonCursor { text, at: *track };
+            cursor.blanks();
+            if cursor.taken(b']') && !text[..*track].ends_with(',') {
+                spans.push(*track..cursor.at);
+                over += 1;
+                continue;
+            }
+            let mut cursor = JsonCursor { text, at: *track };
+            let value = cursor.value(0)?;
+            spans.push(value.span.clone());
+            cells.push(cell(value)?);
+            // The bracket that closes stays for the next time.
+            cursor.blanks();
+            *track = match cursor.peek() {
+                Some(b']') => cursor.at,
+                _ => {
+                    cursor.separated(b']')?;
+                    cursor.at
+                }
+            };
+        }
+        match over {
+            0 => {}
+            _ if cells.is_empty() => {
+                self.tracks.clear();
+                return Ok(self.close());
+            }
+            _ => {
+                self.tracks.clear();
+                let ended = spans.iter().find(|span| text[..span.end].ends_with(']'));
+                let message = "this column ends before others do";
+                return wrong(
+                    ended.cloned().unwrap_or_default(),
+                    message,
+                    "as many values in each",
+                );
+            }
+        }
+        let span = spans[0].clone();
+        let columns = self.columns.as_ref().map(|columns| columns.row(&cells));
+        if let Some(row) = columns {
+            let row = row.map_err(|fault| {
+                located(fault, |cell| spans.get(cell).cloned().unwrap_or_default()).or(span.clone())
+            })?;
+            self.records.row(row, &self.settings);
+        }
+        Ok(Some(span))
+    }
+
+    /// Reads all but the points: gives where these begin; none where the columns stand one by one.
+    fn look_over(&mut self, text: &str) -> Read<Option<usize>> {
         let mut cursor = JsonCursor { text, at: 0 };
         if text.starts_with('\u{FEFF}') {
             cursor.at = '\u{FEFF}'.len_utf8();
@@ -137,7 +203,8 @@ impl JsonList {
             return wrong(rest, "something stands behind the list", "one list a file");
         }
         match points {
-            Some(points) => Ok(points),
+            Some(points) => Ok(Some(points)),
+            None if !self.tracks.is_empty() => Ok(None),
             None => wrong(
                 begin..begin + 1,
                 "the list has no `points`",
@@ -149,6 +216,7 @@ impl JsonList {
     /// The keys of the object whose brace was taken; gives where the points begin.
     fn object(&mut self, cursor: &mut JsonCursor<'_>) -> Read<Option<usize>> {
         let mut points = None;
+        let mut tracks: Vec<(String, Range<usize>)> = Vec::new();
         cursor.blanks();
         if cursor.taken(b'}') {
             return Ok(None);
@@ -167,6 +235,10 @@ impl JsonList {
                     let value = cursor.value(0)?;
                     self.columns = Some(columns(&value)?);
                 }
+                _ if is_column(&key) && cursor.lists() => {
+                    self.tracks.extend(cursor.points()?);
+                    tracks.push((key, key_span));
+                }
                 _ => {
                     let value = cursor.value(0)?;
                     let cell = match &value.kind {
@@ -177,12 +249,27 @@ impl JsonList {
                     self.settings.take(&key, &cell).map_err(|fault| {
                         located(fault, |cell| spans.get(cell).cloned().unwrap_or_default())
                     })?;
+                    let (line, _, shown) = self.shown(cursor.text, spans[0].start);
+                    let place = RecordPlace { line: self.first + line, text: shown.to_owned() };
+                    self.settings.put(&key, place);
                 }
             }
             if !cursor.separated(b'}')? {
-                return Ok(points);
+                break;
             }
         }
+        if let Some((_, span)) = tracks.first() {
+            if points.is_some() || self.columns.is_some() {
+                let message = "the list has `points`, or `columns`, and columns one by one as well";
+                return wrong(span.clone(), message, "leave one of them out");
+            }
+            let columns = RowColumns::of(tracks.iter().map(|(name, _)| name.as_str()));
+            self.columns =
+                Some(columns.map_err(|fault| {
+                    located(fault, |cell| tracks[cell].1.clone()).or(span.clone())
+                })?);
+        }
+        Ok(points)
     }
 
     /// Takes a point.
@@ -240,17 +327,22 @@ impl JsonList {
         self.lines
     }
 
+    /// The line of the byte `at` counted from 0, and of its text what is shown: where that begins, and it.
+    fn shown<'t>(&mut self, text: &'t str, at: usize) -> (u64, usize, &'t str) {
+        let line = self.line(text, at);
+        let from = boundary(text, at.saturating_sub(SHOWN));
+        let until = boundary(text, at.saturating_add(2 * SHOWN).min(text.len()));
+        let from = text[from..at].rfind('\n').map_or(from, |end| from + end + 1);
+        let until = text[at..until].find('\n').map_or(until, |end| at + end);
+        (line, from, text[from..until].trim_end_matches('\r'))
+    }
+
     /// The fault in the line that it stands in, or a part of it.
     fn told(&mut self, text: &str, fault: Wrong) -> SyntaxFault {
         let Wrong { span, message, help } = fault;
         let start = span.start.min(text.len());
-        let line = self.line(text, start);
-        let from = boundary(text, start.saturating_sub(SHOWN));
-        let until = boundary(text, start.saturating_add(2 * SHOWN).min(text.len()));
-        let from = text[from..start].rfind('\n').map_or(from, |end| from + end + 1);
-        let until = text[start..until].find('\n').map_or(until, |end| start + end);
-        let shown = text[from..until].trim_end_matches('\r');
-        let span = start - from..span.end.clamp(start, until) - from;
+        let (line, from, shown) = self.shown(text, start);
+        let span = start - from..span.end.max(start) - from;
         let span = span.start.min(shown.len())..span.end.min(shown.len());
         SyntaxFault { line, ..SyntaxFault::new(shown, span, message).help(help) }
     }
@@ -413,6 +505,12 @@ impl JsonCursor<'_> {
             return self.fault("a colon is expected");
         }
         Ok((key, span))
+    }
+
+    /// A list stands next.
+    fn lists(&mut self) -> bool {
+        self.blanks();
+        self.peek() == Some(b'[')
     }
 
     /// Passes over the points; gives where the first begins.

@@ -10,6 +10,7 @@ mod row;
 mod setting;
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use crate::cl::{
     CircleRecord, CoolantWord, FeedRate, FeedUnit, LoadTool, Sense, SpindleUnit, SpindleWord,
@@ -20,7 +21,7 @@ use crate::fault::SyntaxFault;
 pub(crate) use csv::CsvList;
 pub(crate) use json::{JsonList, MOST_JSON};
 use row::{Row, RowColumns};
-use setting::Settings;
+use setting::{Setting, Settings};
 
 /// What is shown of a name, and of a line on either side of a fault, bytes.
 const SHOWN: usize = 60;
@@ -57,10 +58,40 @@ impl ListForm {
     }
 }
 
+/// A text is a list of points for certain: a line of its beginning names the columns x, y and z, or it is JSON that has points
+/// or these columns. A file that is to be posted need not be one for certain ([`ListForm`]); one that is open in an editor may
+/// be any other table.
+pub fn is_point_list(text: &str) -> bool {
+    const SURE: usize = 4096;
+    let mut end = SURE.min(text.len());
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    let head = &text[..end];
+    match ListForm::of(head.as_bytes()) {
+        None => false,
+        Some(ListForm::Csv) => csv::heads(head),
+        Some(ListForm::Json) => {
+            let keys = |keys: &[&str]| keys.iter().all(|key| head.contains(&format!("\"{key}\"")));
+            keys(&["points"]) || keys(&["x", "y", "z"])
+        }
+    }
+}
+
+/// Where a record stands that is none of the row that was taken last: its line and the text of that.
+#[derive(Debug)]
+pub(crate) struct RecordPlace {
+    pub(crate) line: u64,
+    pub(crate) text: String,
+}
+
+/// A record of a row, and where it stands if that is elsewhere.
+pub(crate) type PlacedRecord = (Statement, Option<Arc<RecordPlace>>);
+
 /// Rows to records: what they say that is modal is said where it changes.
 #[derive(Debug, Default)]
 pub(crate) struct RowRecords {
-    queue: VecDeque<Statement>,
+    queue: VecDeque<PlacedRecord>,
     /// The end was told.
     ended: bool,
     /// The feed that is in force, units a minute.
@@ -71,7 +102,7 @@ pub(crate) struct RowRecords {
 
 impl RowRecords {
     /// The next record of what was taken last.
-    pub(crate) fn next(&mut self) -> Option<Statement> {
+    pub(crate) fn next(&mut self) -> Option<PlacedRecord> {
         self.queue.pop_front()
     }
 
@@ -80,22 +111,29 @@ impl RowRecords {
         !self.queue.is_empty()
     }
 
-    /// What stands ahead of the points.
+    /// What stands ahead of the points: each record where its setting stands.
     fn settings(&mut self, settings: &Settings) {
         let Settings { units, tool, spindle, coolant, name, .. } = settings;
-        self.queue.extend(name.clone().map(Statement::PartName));
-        self.queue.push_back(Statement::Units(units.unwrap_or(Units::Millimetre)));
+        let units = Statement::Units(units.unwrap_or(Units::Millimetre));
         let load = |number| Statement::LoadTool(LoadTool { number, ..LoadTool::default() });
-        self.queue.extend(tool.map(load));
-        self.queue.extend(spindle.map(|speed| {
+        let turn = |speed| {
             Statement::Spindle(SpindleWord::On {
                 speed: Some(speed),
                 unit: SpindleUnit::Rpm,
                 sense: Some(Sense::Clockwise),
                 most: None,
             })
-        }));
-        self.queue.extend(coolant.map(Statement::Coolant));
+        };
+        let said = [
+            (name.clone().map(Statement::PartName), Setting::Name),
+            (Some(units), Setting::Units),
+            (tool.map(load), Setting::Tool),
+            (spindle.map(turn), Setting::Spindle),
+            (coolant.map(Statement::Coolant), Setting::Coolant),
+        ];
+        let placed = said.into_iter();
+        let placed = placed.filter_map(|(said, setting)| Some((said?, settings.place(setting))));
+        self.queue.extend(placed);
     }
 
     /// A point: it is come to cutting, unless it is the first or says otherwise.
@@ -105,13 +143,14 @@ impl RowRecords {
         let feed = row.feed.or(settings.feed.filter(|_| cuts));
         if let Some(value) = feed.filter(|feed| self.feed != Some(*feed)) {
             let unit = Some(FeedUnit::PerMinute);
-            self.queue.push_back(Statement::Feed(FeedRate { value: Some(value), unit }));
+            let feed = Statement::Feed(FeedRate { value: Some(value), unit });
+            self.queue.push_back((feed, None));
             self.feed = Some(value);
         }
         if !cuts {
-            self.queue.push_back(Statement::Rapid);
+            self.queue.push_back((Statement::Rapid, None));
         }
-        self.queue.extend(row.arc.map(|arc| {
+        let circle = row.arc.map(|arc| {
             Statement::Circle(CircleRecord {
                 centre: arc.centre,
                 axis: arc.axis,
@@ -119,14 +158,15 @@ impl RowRecords {
                 sense: Some(Sense::CounterClockwise),
                 turns: None,
             })
-        }));
-        self.queue.push_back(Statement::Goto { point: row.point, axis: row.axis });
+        });
+        self.queue.extend(circle.map(|circle| (circle, None)));
+        self.queue.push_back((Statement::Goto { point: row.point, axis: row.axis }, None));
     }
 
     /// The list is over; true if that was told before.
     fn end(&mut self) -> bool {
         if !self.ended {
-            self.queue.push_back(Statement::Fini);
+            self.queue.push_back((Statement::Fini, None));
         }
         std::mem::replace(&mut self.ended, true)
     }

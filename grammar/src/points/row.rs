@@ -89,8 +89,8 @@ impl RowColumns {
                     "" => (format!("column {} has no name", cell + 1), String::new()),
                     "e" => (
                         "amounts of an extruder are not read from a list".to_owned(),
-                        "[word.U] is = \"0.0333 * s\" in the machine file goes with the way of the tip; leave \
-                         the column out"
+                        "leave the column out: [word.E] is = \"0.0333 * s\" in the machine file (on a printer; U, V or W on \
+                         others) goes with the way of the tip; a bead of another width is a list of its own"
                             .to_owned(),
                     ),
                     _ => {

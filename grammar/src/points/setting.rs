@@ -1,6 +1,8 @@
 //! What a list says besides its points.
 
-use super::{Cell, CellFault, CoolantWord, SHOWN, Units};
+use std::sync::Arc;
+
+use super::{Cell, CellFault, CoolantWord, RecordPlace, SHOWN, Units};
 use crate::text::excerpt;
 
 /// What holds for all points of a list.
@@ -15,17 +17,42 @@ pub(super) struct Settings {
     pub(super) feed: Option<f64>,
     /// Name of the part.
     pub(super) name: Option<String>,
+    /// Where each of them stands.
+    places: [Option<Arc<RecordPlace>>; SETTINGS.len()],
 }
 
-/// Their names, for messages.
-pub(super) const SETTINGS: &str = "units, tool, spindle, coolant, feed, name";
+/// One that has a record of its own ahead of the points: its place in [`SETTINGS`].
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Setting {
+    Units = 0,
+    Tool = 1,
+    Spindle = 2,
+    Coolant = 3,
+    Name = 5,
+}
+
+/// Their names.
+const SETTINGS: [&str; 6] = ["units", "tool", "spindle", "coolant", "feed", "name"];
 
 /// `word` is the name of one of them.
 pub(super) fn is_setting(word: &str) -> bool {
-    SETTINGS.split(", ").any(|name| name.eq_ignore_ascii_case(word))
+    SETTINGS.iter().any(|name| name.eq_ignore_ascii_case(word))
 }
 
 impl Settings {
+    /// The setting `name` stands there.
+    pub(super) fn put(&mut self, name: &str, place: RecordPlace) {
+        let known = SETTINGS.iter().position(|known| known.eq_ignore_ascii_case(name));
+        if let Some(known) = known {
+            self.places[known] = Some(Arc::new(place));
+        }
+    }
+
+    /// Where it stands, if it was said.
+    pub(super) fn place(&self, setting: Setting) -> Option<Arc<RecordPlace>> {
+        self.places[setting as usize].clone()
+    }
+
     /// Takes one; the value is the cell 1 of a fault, the name the cell 0.
     pub(super) fn take(&mut self, name: &str, value: &Cell) -> Result<(), CellFault> {
         let wrong =
@@ -81,7 +108,11 @@ impl Settings {
             },
             _ => {
                 let message = format!("a list of points has no setting `{}`", excerpt(name, SHOWN));
-                return Err(CellFault::at(0, message, format!("expected one of {SETTINGS}")));
+                return Err(CellFault::at(
+                    0,
+                    message,
+                    format!("expected one of {}", SETTINGS.join(", ")),
+                ));
             }
         };
         match given {

@@ -220,6 +220,90 @@ fn what_is_wrong_is_told_by_line_and_column() {
     }
 }
 
+/// A setting is told where it stands, and not where the points begin.
+#[test]
+fn a_setting_has_its_own_line() {
+    let mut reader =
+        ClReader::new(&b"# a pocket\ntool,3\nunits,inch\n\nspindle,6000\nx,y,z\n0,0,5\n"[..]);
+    let mut found = Vec::new();
+    while let Some(record) = reader.next_record().unwrap() {
+        found.push((record.line, record.text().into_owned()));
+    }
+    let lines = [(3, "units,inch"), (2, "tool,3"), (5, "spindle,6000"), (7, "0,0,5")];
+    assert_eq!(found[..4], lines.map(|(line, text)| (line, text.to_owned())), "{found:?}");
+    let json = "{\n \"points\": [[0, 0, 1]],\n \"tool\": 3\n}\n";
+    let all = both(json);
+    assert!(all.iter().any(|told| told.starts_with("3 LoadTool")), "{all:?}");
+    assert!(all.iter().any(|told| told.starts_with("2 Units")), "{all:?}");
+}
+
+/// What stands in quotation marks is one value, whatever is in it.
+#[test]
+fn quotation_marks_hold_separators() {
+    let all = both("name,\"Bracket, \"\"left\"\" (2)\"\nx,y,z\n\"0\", \"1\" ,5\n");
+    assert!(all[0].contains("PartName(\"Bracket, \\\"left\\\" (2)\")"), "{all:?}");
+    assert!(all.iter().any(|told| told.contains("point: [0.0, 1.0, 5.0]")), "{all:?}");
+    // A comma in a name does not make it the separator of a list with semicolons.
+    let all = both("\"name\";\"a;b\"\nx;y;z\n1;2;3\n");
+    assert!(all[0].contains("PartName(\"a;b\")"), "{all:?}");
+    for (row, told) in [
+        ("\"1,5\",2,3", "2:1 `x` has a comma: a decimal comma is not read `\"1,5\"`"),
+        ("1,2,\"3", "2:5 a quotation mark is still open `\"3`"),
+        ("1,\"2,3", "2:3 a quotation mark is still open `\"2,3`"),
+    ] {
+        let all = both(&format!("x,y,z\n{row}\n"));
+        assert_eq!(all[1], told, "{all:?}");
+    }
+}
+
+#[test]
+fn json_may_have_its_columns_one_by_one() {
+    let cl = [
+        (2, "UNITS/MM"),
+        (2, "RAPID"),
+        (2, "GOTO/0,0,5"),
+        (3, "FEDRAT/8,PERMIN"),
+        (3, "GOTO/1,2,3"),
+        (5, "FINI"),
+    ];
+    let list = "{\"x\": [\n0,\n1], \"feed\": [null, 8],\n \"y\": [0, 2], \"z\": [5, 3]\n}";
+    same(list, &cl);
+    same("{\"x\": [], \"y\": [], \"z\": []}", &[(1, "UNITS/MM"), (1, "FINI")]);
+    for (list, told) in [
+        (
+            "{\"x\": [1, 2], \"y\": [1], \"z\": [1, 2]}",
+            "1:22 this column ends before others do `]`",
+        ),
+        ("{\"x\": [1, 2,], \"y\": [1, 2], \"z\": [1, 2]}", "1:13 a value is expected `]`"),
+        ("{\"x\": [1], \"z\": [2]}", "1:2 the column `y` is missing `\"x\"`"),
+        (
+            "{\"x\": [1], \"points\": []}",
+            "1:2 the list has `points`, or `columns`, and columns one by one as well `\"x\"`",
+        ),
+        ("{\"x\": [1], \"y\": [\"a\"], \"z\": [2]}", "1:18 `y` is no number `\"a\"`"),
+    ] {
+        let all = both(list);
+        assert!(all.iter().any(|found| found == told), "{told}\n{all:?}");
+    }
+}
+
+/// In an editor a table of something else is none, and so is other JSON.
+#[test]
+fn a_list_is_told_from_other_files() {
+    for (text, is) in [
+        ("tool,1\nx,y,z\n0,0,5\n", true),
+        ("X;Y;Z;feed\n", true),
+        ("id,name,price\n1,a,2\n", false),
+        ("{\"points\": [[0,0,1]]}", true),
+        ("{\"x\": [1], \"y\": [1], \"z\": [1]}", true),
+        ("[{\"x\": 1, \"y\": 1, \"z\": 1}]", true),
+        ("{\"name\": \"post\", \"version\": \"1\"}", false),
+        ("GOTO/1,2,3\n", false),
+    ] {
+        assert_eq!(post_grammar::is_point_list(text), is, "{text}");
+    }
+}
+
 /// A list that was cut off is no shorter list.
 #[test]
 fn a_list_that_was_cut_off_is_told() {

@@ -61,10 +61,21 @@ pub fn text(
     if let Some(line) = posted.line(first as u64 + 1) {
         said.push_str(&format!("\n\n{}", on_machine(posted, line)));
     }
-    if posted.refused {
-        said.push_str("\n\nThe program is refused, see the messages.");
-    }
+    said.push_str(refused(posted));
     Some(said)
+}
+
+/// What is said of a line of a list of points, counted from 0; none where no point is.
+pub fn of_point(line: usize, posted: &Posted) -> Option<String> {
+    let point = posted.line(line as u64 + 1)?;
+    Some(format!("{}{}", on_machine(posted, point), refused(posted)))
+}
+
+fn refused(posted: &Posted) -> &'static str {
+    match posted.refused {
+        true => "\n\nThe program is refused, see the messages.",
+        false => "",
+    }
 }
 
 fn on_machine(posted: &Posted, line: &posted::PostedLine) -> String {

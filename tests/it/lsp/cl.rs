@@ -114,6 +114,38 @@ fn what_posting_refuses_is_told_where_it_stands() {
     assert_contains(&found[0]["message"].to_string(), &["no machine vmcc", "vmc"]);
 }
 
+/// A list of points is one by what it says; of other tables and other JSON nothing is told.
+#[test]
+fn lists_of_points_are_told_of() {
+    let mut client = Client::new(&["--machine", "xyzac-trt", "--tool-length", "50"], &json!({}));
+    let uri = "file:///nowhere/path.csv";
+    let text =
+        "tool,1\nspindle,6000\nfeed,800\nx,y,z,i,j,k\n0,0,20,0,0,1\n10,0,0,0,0.1,1\n20,0,0,0,0,\n";
+    client.open(uri, "csv", text);
+    let found = client.findings(uri, 1);
+    assert_eq!(told(&found), ["syntax 6:11-11"], "{found:#?}");
+    client.edit(uri, 2, [6, 0, 6, 11], "20,0,0,0,0,1");
+    let mut said = String::new();
+    for _ in 0..600 {
+        said = client.hover(uri, 5, 2);
+        if said.contains("certified: tip ") {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    assert_contains(&said, &["On ", "X ", " A ", "block"]);
+    assert!(!said.contains("GOTO"), "{said}");
+    // No words of CL files.
+    assert!(labels(&client.at("completion", uri, 5, 0)).is_empty());
+    for (uri, language, text) in [
+        ("file:///nowhere/prices.csv", "csv", "id,name,price\n1,a,2\n"),
+        ("file:///nowhere/package.json", "json", "{\"name\": \"x\"}"),
+    ] {
+        client.open(uri, language, text);
+        assert_eq!(client.hover(uri, 0, 1), "", "{uri}");
+    }
+}
+
 #[test]
 fn words_are_offered_and_misspelt_ones_put_right() {
     let mut client = Client::new(&[], &json!({}));

@@ -27,7 +27,7 @@ impl ClInterpreter {
                 record,
                 "arc",
                 "the arc begins at the last point, and there is none".to_owned(),
-                "put a GOTO before the CIRCLE",
+                "come to a point ahead of it: GOTO ahead of CIRCLE, in a list of points a row ahead of that of the arc",
             );
             return;
         };
@@ -107,7 +107,7 @@ impl ClInterpreter {
                     "the ends of this arc lie {:.4} mm apart in their distance from its centre; {ARC_MISMATCH} mm is allowed",
                     arc.mismatch()
                 ),
-                "check the CIRCLE before it",
+                "check the centre: CIRCLE ahead of the point, in a list of points arc_x, arc_y, arc_z",
             );
         }
         if let Some(radius) = circle.radius

@@ -18,7 +18,7 @@ impl ClInterpreter {
         if !matches!(record.statement, Statement::Remark(_) | Statement::Fini) {
             self.count("FINI", record, WordUsage::Used);
             if !std::mem::replace(&mut self.told_after_fini, true) {
-                self.warn(record, "after-fini", "records behind FINI are left out".to_owned());
+                self.warn(record, "after-fini", "what stands behind the end is left out: behind FINI, or in a list of points behind a line that begins with $$".to_owned());
             }
         }
     }

@@ -88,7 +88,7 @@ impl ClInterpreter {
                 record,
                 "tool",
                 format!("this file loads no tool, and tool {number} of the file before it is in the spindle"),
-                "let the CAM system write LOADTL; --tool N names the tool of files that load none",
+                "let the CAM system write LOADTL (in a list of points: `tool,N`); --tool N names the tool of files that load none",
             );
         }
         if let (Some(number), None) = (offset, self.offset) {

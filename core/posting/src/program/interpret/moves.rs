@@ -317,7 +317,7 @@ impl ClInterpreter {
                 record,
                 "no-feed",
                 "this move has no feed: no FEDRAT before it, and no RAPID".to_owned(),
-                "the CAM system must write a FEDRAT; --feed MM_A_MINUTE is for cuts without one",
+                "the CAM system must write a FEDRAT, a list of points has the setting or the column `feed`; --feed MM_A_MINUTE is for cuts without one",
             );
             return None;
         };

@@ -123,12 +123,12 @@ impl ClInterpreter {
         let (message, help) = if self.spindle.said {
             (
                 "the tool cuts, and the file has switched the spindle off",
-                "the CAM system should write SPINDL before this line; --spindle off cuts with a spindle that stands",
+                "the CAM system should write SPINDL before this line (a list of points: `spindle,RPM`); --spindle off cuts with a spindle that stands",
             )
         } else {
             (
                 "the tool cuts, and the spindle was not switched on",
-                "the CAM system should write SPINDL before this line; --spindle RPM switches it on at each tool for which the file does not, --spindle off lets it stand",
+                "the CAM system should write SPINDL before this line (a list of points: `spindle,RPM`); --spindle RPM switches it on at each tool for which the file does not, --spindle off lets it stand",
             )
         };
         self.fault(record, "spindle", message.to_owned(), help);

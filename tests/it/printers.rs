@@ -72,6 +72,9 @@ struct Move {
     /// The share of its largest feed that the fastest axis has.
     busiest: f64,
     pushed: f64,
+    /// Axes that move, and Z at its end.
+    axes: String,
+    height: f64,
 }
 
 /// The nozzle against the part: the head goes along X and Z; the bed goes against Y, is tilted against U about a line along
@@ -92,6 +95,8 @@ fn runs(firmware: &Firmware, text: &str) -> Vec<Move> {
     let mut moves = Vec::new();
     for (line, text) in text.lines().enumerate() {
         let block = text.split(';').next().unwrap().trim();
+        // Of RepRapFirmware, in whose zero the program counts: the part origin is the machine's.
+        let block = block.strip_prefix("G53 ").filter(|_| firmware.name == "rrf").unwrap_or(block);
         let mut words = block.split_whitespace();
         let Some(command) = words.next() else {
             continue;
@@ -107,6 +112,7 @@ fn runs(firmware: &Firmware, text: &str) -> Vec<Move> {
         }
         let from = at.clone();
         let mut own_feed = false;
+        let mut words_of_axes = String::new();
         for (letter, number) in words.map(|word| word.split_at(1)) {
             let number: f64 = number.parse().unwrap();
             match letter {
@@ -116,6 +122,7 @@ fn runs(firmware: &Firmware, text: &str) -> Vec<Move> {
                 }
                 _ => *at.get_mut(letter).expect(text) = number,
             }
+            words_of_axes.extend(letter.chars().filter(|letter| !"FE".contains(*letter)));
         }
         assert!(own_feed || !rapid, "{}: a rapid at the feed of cuts: `{text}`", firmware.name);
         let way = |name: &str| at[name] - from[name];
@@ -137,6 +144,8 @@ fn runs(firmware: &Firmware, text: &str) -> Vec<Move> {
             axis: between(1.0).1,
             busiest: MOST.iter().map(speed).fold(0.0, f64::max),
             pushed: way("E"),
+            axes: words_of_axes,
+            height: at["Z"],
         });
     }
     moves
@@ -189,6 +198,10 @@ fn a_bead_round_a_dome_is_laid_as_the_list_has_it() {
     for firmware in &FIRMWARE {
         let name = firmware.name;
         let moves = runs(firmware, &posted(name));
+        // Up, whatever stands there, before the bed turns; then across, and down last.
+        let ways = moves.iter().take(4).map(|one| one.axes.as_str());
+        assert_eq!(ways.collect::<Vec<_>>(), ["Z", "UV", "XY", "Z"], "{name}");
+        assert_eq!([moves[0].height, moves.last().unwrap().height], [120.0; 2], "{name}");
         let mut laid = 0.0;
         let mut at_feed = 0;
         for one in &moves {
@@ -394,6 +407,50 @@ fn a_rapid_at_another_feed_is_told() {
     }
 }
 
+/// Beads from one side of a pole to another, at their own height: while the bed turns between them the nozzle stays where
+/// it is, and what it goes without pushing is no bead. Rapids had stood 0.2 mm aside there.
+#[test]
+fn a_turn_at_a_pole_at_the_height_of_beads_keeps_still() {
+    for list in [POLE_TRAVEL, POLE_STANDS] {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("pole.csv");
+        fs::write(&file, list).unwrap();
+        let beads = points(list);
+        for firmware in &FIRMWARE {
+            let name = firmware.name;
+            let machine = ["-m", "printer-open5x", "--tool-length", "0", "--dialect", name];
+            let made =
+                run(command().args(["-q", "-o", "-", "--verify"]).args(machine).arg(&file), b"");
+            assert_eq!(made.code, 0, "{name}: {}", made.err);
+            // Where no bead is pushed out, at the height of the beads: on the straight ways of the list.
+            let low = |one: &&Move| one.pushed == 0.0 && one.tips.iter().all(|tip| tip.z < 2.5);
+            let moves = runs(firmware, &made.out);
+            let travels: Vec<_> = moves.iter().filter(low).collect();
+            assert!(!travels.is_empty(), "{name}: {}", made.out);
+            for travel in travels {
+                let off = travel.tips.iter().map(|tip| {
+                    let ways = beads.windows(2);
+                    let near = ways.map(|pair| to_segment(tip, [&pair[0].0, &pair[1].0]));
+                    near.fold(f64::INFINITY, f64::min)
+                });
+                let off = off.fold(0.0, f64::max);
+                assert!(off < 0.023, "{name}, line {}: {off} mm", travel.line);
+            }
+        }
+    }
+}
+
+/// A rapid to where the nozzle stands along the line of V, which turns there for the next bead.
+const POLE_STANDS: &str = "feed,600\nx,y,z,i,j,k,rapid\n60,-40,40,0,0,1,1\n18.548,1.121,14,-0.01853,-0.00752,1,1\n\
+    18.548,1.121,2,-0.01853,-0.00752,1,1\n26.983,-1.134,2,-0.06601,0.07512,1,\n26.983,-1.134,14,-0.06601,0.07512,1,1\n\
+    26.461,-5.196,2,0.00775,-0.01844,1,1\n-9.235,2.309,2,-0.07138,-0.07004,1,\n-2.511,-28.322,2,0,0,1,1\n\
+    3.045,-19.153,2,0.08389,0.05443,1,\n3.045,-19.153,14,0.08389,0.05443,1,1\n";
+
+/// One to a nozzle that leans a little.
+const POLE_TRAVEL: &str = "feed,600\nx,y,z,i,j,k,rapid\n60,-40,40,0,0,1,1\n19.802,10.218,14,-0.03291,0.09443,1,1\n\
+    19.802,10.218,2,-0.03291,0.09443,1,1\n28.407,-0.038,2,0.01864,-0.00726,1,\n21.197,-1.186,2,-0.00079,-0.01998,1,1\n\
+    -5.141,-19.620,2,-0.38134,-0.12073,1,\n-5.141,-19.620,14,-0.38134,-0.12073,1,1\n";
+
 /// What the firmware has no words for is refused, not left out.
 #[test]
 fn what_a_printer_cannot_do_is_refused() {
@@ -411,7 +468,8 @@ fn what_a_printer_cannot_do_is_refused() {
         assert!(inch.contains("inches are not sure"), "{name}: {inch}");
     }
     for name in ["klipper", "marlin"] {
-        let up = told(name, &["--set", "control.retract={Z=100}"]);
+        let no_line = format!("control.{name}.retract=[]");
+        let up = told(name, &["--set", "control.retract={Z=100}", "--set", &no_line]);
         assert!(up.contains("no words for positions in machine coordinates"), "{name}: {up}");
         assert!(!up.contains("loads no tool") && !up.contains("csv:0"), "{name}: {up}");
     }

@@ -129,6 +129,11 @@ impl Lexicon {
         self.writes.has(Capabilities::COMMAND_A_LINE)
     }
 
+    /// It has no words for positions of the machine.
+    pub(crate) fn has_no_positions(&self) -> bool {
+        self.writes.has(Capabilities::NO_PARK)
+    }
+
     /// What the reader of its programs must know.
     pub fn syntax(&self) -> &NcSyntax {
         &self.syntax

@@ -347,7 +347,11 @@ impl Builder<'_> {
         let tools = self.tool_lengths(&file.tools);
         let tool_table = self.tool_table(&file.tools.keys);
         let options = self.control_options(file, &axes, &mut control_options);
-        let own = self.axis_free_rules(file, &mut model_options);
+        let mut own = self.axis_free_rules(file, &mut model_options);
+        if along.is_some() && file.accuracy.rapid_tolerance.is_none() {
+            // A nozzle travels at the height of its beads.
+            own.accuracy.rapid_tolerance = own.accuracy.tolerance;
+        }
         let nose = self.nose(&file.cl, &file.tools, &axes, &own.spindle);
         let solids = self.solids(&file.solids, &axes);
         let fixtures = self.fixtures(&file.fixture, &axes);

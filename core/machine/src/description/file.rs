@@ -747,7 +747,7 @@ keys! {
         tolerance: Option<KeyedNumber> = TOLERANCE,
         /// Largest deviation of the tool axis in cuts, degrees; 0.05 if not said.
         axis_tolerance: Option<KeyedNumber> = TOLERANCE,
-        /// Largest deviation of the tip in rapids, mm; 0.5 if not said. On the line of a tool that has cut, as in a hole, it is that of cuts, unless the axes turn to another solution there.
+        /// Largest deviation of the tip in rapids, mm; if not said 0.5, and `tolerance` where a word goes with the way of the tip (`[word.E] is = "0.0333 * s"`): a nozzle travels at the height of its beads. On the line of a tool that has cut, as in a hole, it is that of cuts, unless the axes turn to another solution there.
         rapid_tolerance: Option<KeyedNumber> = TOLERANCE,
         /// What is done about a move that strays; linearise if not said.
         method: Method,

@@ -431,9 +431,19 @@ impl ControlState {
         holds.iter().filter(|(holds, _)| *holds).map(|(_, name)| *name).collect()
     }
 
+    /// What the words count from is shifted or turned by the program, where the control keeps that past its end: a
+    /// Siemens and a conversational one take it back there.
+    fn shifted(&self) -> Option<&'static str> {
+        let kept = matches!(self.lexicon.language(), Language::Macro | Language::Rs274);
+        let shifted = !self.frames.outer.is_default() || !self.frames.inner.is_default();
+        (kept && shifted).then_some("a shift or turn of the coordinates (G92, G52, G68)")
+    }
+
     /// The program ends.
     pub(super) fn end(&mut self) {
-        self.report.end = Some(ModesInForce { line: self.line, modes: self.in_force() });
+        let mut modes = self.in_force();
+        modes.extend(self.shifted());
+        self.report.end = Some(ModesInForce { line: self.line, modes });
         self.tell(ProgramEvent::End);
         self.ended = true;
     }
@@ -562,6 +572,11 @@ impl ControlState {
                 "nc-feed",
                 "under inverse time every block at feed says its F, and this one does not",
             ));
+        }
+        if kind == MotionKind::Rapid
+            && let Some((joints, said)) = self.retracts(words)
+        {
+            return self.go_machine(kind, &joints, said);
         }
         self.begins();
         self.relies_on_nothing_left();

@@ -77,6 +77,35 @@ impl ControlState {
         self.go_machine(kind, &joints, stated)
     }
 
+    /// Where a control has no words for positions of the machine, a rapid by the axes of the retract alone to where the
+    /// machine file has it is the retract: the axis values, and the places of the axes that are said.
+    pub(super) fn retracts(&self, words: &mut BlockWords) -> Option<(Joints, u32)> {
+        /// Ends of words are rounded, mm.
+        const ROUNDED: f64 = 1e-3;
+        let retract = &self.machine.frame.retract;
+        let plain = self.to_work.upright() && !self.modal.incremental && words.named_axes == 0;
+        if !self.lexicon.has_no_positions() || retract.is_empty() || !plain {
+            return None;
+        }
+        let (mut joints, mut said, mut letters) = (self.at.joints, 0, 0);
+        for &(place, position) in retract {
+            let row = self.axes.cartesian.iter().position(|known| *known == Some(place))?;
+            let value = words.get(b'X' + row as u8)?;
+            let at = self.zero[place] + self.to_work.origin[row] + value * self.modal.unit;
+            if libm::fabs(at - position) > ROUNDED {
+                return None;
+            }
+            joints[place] = at;
+            said |= 1 << place;
+            letters |= bit(b'X' + row as u8);
+        }
+        if words.present & self.axes.mask != letters {
+            return None;
+        }
+        words.used |= letters;
+        Some((joints, said))
+    }
+
     /// Goes to `joints`, which the program states as positions of the machine; those of the places in `said` are stated.
     pub(super) fn go_machine(
         &mut self,

@@ -95,8 +95,9 @@ impl<C: Course> Verifier<'_, C> {
         if self.reaches_at_feed(motion, places) || self.follows_a_rapid(motion, places) {
             return true;
         }
-        if fast && stands(places) {
-            // The part turns about the tool: no cut, though the next may begin here.
+        if fast && (stands(places) || motion.along == Some(false) && self.keeps_still(places)) {
+            // The part turns about the tool: no cut, though the next may begin here. What an extruder does not go with is
+            // none either, as long as the nozzle stays within the tolerance of beads.
             self.found.rapids_at_feed += 1;
             self.set_kind("rapid");
             return true;
@@ -122,6 +123,11 @@ impl<C: Course> Verifier<'_, C> {
             self.rapid(motion, places);
         }
         fast
+    }
+
+    /// The tip stays where it is, as cuts do.
+    fn keeps_still(&self, places: &[ToolPlace]) -> bool {
+        places.iter().all(|place| (place.point - places[0].point).norm() <= self.bound.point)
     }
 
     /// A cut: it has a place on the course, or is a fault.

@@ -79,6 +79,12 @@ fn each_rule_is_told_at_its_line_and_a_good_program_breaks_none() {
         ("G49\n", "G41 D1\n", "nc-modes", 34),
         ("T2 M6", "G41 D1\nT2 M6", "nc-modes", 20),
         ("M30\n", "", "missing", 34),
+        // Down at rapid: the first time on the contour, the second where a cut came down before.
+        ("G1 Z-5. F500.", "F500.\nG0 Z-5.\nG1", "rapid", 13),
+        ("Z-8.\n", "G0 Z-8.\nG1\n", "rapid", 27),
+        ("M30\n", "G92 Z0.\nM30\n", "nc-modes", 35),
+        ("G54\n", "G54\nG52 X10.\n", "nc-modes", 35),
+        ("T2 M6", "T2", "tool", 19),
     ] {
         let program = GOOD.replacen(from, to, 1);
         assert_ne!(program, GOOD, "{from}");
@@ -87,6 +93,123 @@ fn each_rule_is_told_at_its_line_and_a_good_program_breaks_none() {
         assert!(told.contains(&(code.to_owned(), line)), "{from:?} as {to:?}: {told:?}\n{found:#}");
         assert_eq!(exit, 1);
     }
+}
+
+/// What no program can do without is an error where its own words say that it is meant, else a warning: somebody may switch
+/// the spindle on by hand, or measure the offset with the one tool.
+#[test]
+fn what_is_left_out_everywhere_is_an_error_where_other_words_ask_for_it() {
+    // One tool, as it comes from a CAM system.
+    let one = GOOD.split_once("G0 Z50.\nT2 M6").unwrap().0.to_owned()
+        + "G0 Z50.\nM9\nM5\nG49\nG53 G0 Z0.\nM30\n%\n";
+    let bare = one.replacen("T1 M6\nS1000 M3\n", "", 1);
+    let no_length = one.replacen("G43 H1 Z50.", "Z50.", 1);
+    let two = GOOD.replacen("G43 H1 Z50.", "Z50.", 1).replacen("G43 H2 Z50.", "Z50.", 1);
+    // Each of two tools by its own work offset, measured with it.
+    let own = two.replacen("T2 M6\n", "T2 M6\nG55\n", 1);
+    for (program, code, severity) in [
+        (one.replacen(" M3\n", "\n", 1), "spindle", "error"),
+        (one.replacen("S1000 M3\n", "", 1), "spindle", "error"),
+        (bare, "spindle", "warning"),
+        (one.replacen("G43 H1", "H1", 1), "length", "error"),
+        (no_length.clone(), "length", "warning"),
+        (two, "length", "error"),
+        (own, "length", "warning"),
+        (one.replacen("T1 M6", "T1", 1), "tool", "warning"),
+        (GOOD.replacen("T2 M6", "T2", 1), "tool", "error"),
+    ] {
+        let (_folder, _, found) = linted(&program, "", &[]);
+        let findings = found["findings"].as_array().unwrap();
+        let of_code = findings.iter().find(|one| one["code"] == code);
+        let found_severity = of_code.map(|one| one["severity"].as_str().unwrap());
+        assert_eq!(found_severity, Some(severity), "{code}: {found:#}\n{program}");
+    }
+    // The next tool, and at the end the first of the next part, may be made ready while one cuts.
+    let ready = GOOD.replacen("G1 Z-5. F500.", "T2\nG1 Z-5. F500.", 1);
+    let ready = ready.replacen("G1 Z-5. F300.", "T1\nG1 Z-5. F300.", 1);
+    let (_folder, code, found) = linted(&ready, "", &["--strict"]);
+    assert_eq!((told(&found), code), (Vec::new(), 0), "{found:#}");
+}
+
+/// Rapids at the depth of cuts, each on a program that is right without it.
+#[test]
+fn rapids_in_the_place_of_cuts_are_told() {
+    let begin = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z0.\nT1 M6\nS1000 M3\nG54\nG0 X0. Y0.\nG43 H1 Z50.\nZ2.\n";
+    let end = "G0 Z50.\nM5\nG49\nG53 G0 Z0.\nM30\n%\n";
+    // A pocket in two depths, in rows from its corner.
+    let rows = |z: f64| {
+        let row = |at: u32| format!("Y{}.\nX{}.\n", 5 * at, if at % 2 == 0 { 0 } else { 40 });
+        let rows: String = (1..7).map(row).collect();
+        format!("G1 Z{z:.1} F300.\nX40.\nX0.\n{rows}G0 Z2.\nX0. Y0.\n")
+    };
+    let pocket = format!("{begin}{}G0 Z-2.\n{}{end}", rows(-2.5), rows(-5.0));
+    // A wave.
+    let wave = |at: i32| {
+        let x = f64::from(at);
+        format!("X{x:.3} Y{:.3} Z{:.3}\n", 5.0 * libm::sin(x / 8.0), -3.0 + libm::cos(x / 8.0))
+    };
+    let waves: String = (0..60).map(wave).collect();
+    let waves = format!("{begin}G1 Z-2. F300.\n{waves}{end}");
+    for (good, from, to) in [
+        (&pocket, "G0 Z-2.\nG1 Z-5.0 F300.", "F300.\nG0 Z-5.0\nG1"),
+        (&waves, &*wave(30), &*format!("G0 {}G1\n", wave(30))),
+    ] {
+        let (_folder, code, found) = linted(good, "", &["--strict"]);
+        assert_eq!((told(&found), code), (Vec::new(), 0), "{found:#}\n{good}");
+        let bad = good.replacen(from, to, 1);
+        assert_ne!(&bad, good);
+        let (_folder, _, found) = linted(&bad, "", &[]);
+        assert!(told(&found).iter().any(|(code, _)| code == "rapid"), "{from}: {found:#}\n{bad}");
+    }
+    // Straight down on a contour that is cut all around from there; and all of a tool's cuts at rapid, as G0 is modal.
+    let around = begin.replace("Z2.\n", "") + "Z-5.\nG1 X40. F300.\nY40.\nX0.\nY0.\n" + end;
+    let (_folder, _, found) = linted(&around, "", &[]);
+    assert_eq!(told(&found), [("rapid".to_owned(), 10)], "{found:#}");
+    let (_folder, _, found) = linted(&waves.replacen("G1 Z-2. F300.", "Z-2.", 1), "", &[]);
+    assert_eq!(told(&found), [("rapid".to_owned(), 8)], "{found:#}");
+    // One digit of a dense path: out and back again.
+    let (_folder, _, found) = linted(&waves.replacen("X30.000", "X39.000", 1), "", &[]);
+    assert!(told(&found).contains(&("stray-point".to_owned(), 42)), "{found:#}");
+    // On the border of what is cut, beside others that are cuts; and beside the part, where a facing goes from row to row so.
+    let across = GOOD.replacen("G1 Y40.\nX0.", "G1 Y40.\nG0 X0.\nG1", 1);
+    let (_folder, _, found) = linted(&across, "", &[]);
+    assert_eq!(told(&found), [("rapid".to_owned(), 16)], "{found:#}");
+    let face =
+        |at: u32| format!("G0 Y{}.\nG1 X{}. F300.\n", 10 * at, if at % 2 == 0 { 60 } else { -10 });
+    let faces: String = (0..5).map(face).collect();
+    let facing = format!("{begin}G0 X-10.\nZ-0.5\n{faces}{end}");
+    let (_folder, code, found) = linted(&facing, "", &["--strict"]);
+    assert_eq!((told(&found), code), (Vec::new(), 0), "{found:#}");
+    // Beside the part the tool comes down at rapid, and in on a straight way that it goes out on again.
+    let beside = format!(
+        "{begin}G0 X-10. Y20.\nZ-5.\nG1 X0. F300.\nY40.\nX60.\nY0.\nX0.\nY20.\nX-10.\n{end}"
+    );
+    let (_folder, code, found) = linted(&beside, "", &["--strict"]);
+    assert_eq!((told(&found), code), (Vec::new(), 0), "{found:#}");
+}
+
+/// A file without a block is no program: an error, not a program in which nothing is wrong.
+#[test]
+fn a_file_without_a_block_is_refused() {
+    for text in [String::new(), "\0".repeat(100_000), "%\n\n%\n".to_owned()] {
+        let (_folder, code, found) = linted(&text, "", &[]);
+        assert_eq!((told(&found), code), (vec![("missing".to_owned(), 1)], 1), "{found:#}");
+    }
+}
+
+/// Where the part sits nobody says: the line is that of the axis that goes farthest.
+#[test]
+fn how_much_travel_is_needed_is_told_at_the_line_that_needs_it() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.nc"), GOOD.replace("X40.\nZ-8.", "X590.\nZ-8.")).unwrap();
+    post_in(
+        folder.path(),
+        &["lint", "part.nc", "-m", "vmc", "--json", "found.json", "--tool-length", "100"],
+    );
+    let found = fs::read_to_string(folder.path().join("found.json")).unwrap();
+    let found: Value = serde_json::from_str(&found).unwrap();
+    let places = told(&found);
+    assert!(places.contains(&("part-place".to_owned(), 26)), "{found:#}");
 }
 
 #[test]
@@ -154,7 +277,7 @@ fn sarif_names_rule_level_and_region_of_each_finding() {
     }
 }
 
-/// The hook's own line, as pre-commit runs it: with the names of files behind it.
+/// The hook's own line, as pre-commit runs it: with the names of files behind it, and no length of a tool said.
 #[test]
 fn the_hook_for_pre_commit_lets_good_programs_pass_alone() {
     let hook = root().join("editors/pre-commit/pre-commit-config.yaml");
@@ -170,9 +293,10 @@ fn the_hook_for_pre_commit_lets_good_programs_pass_alone() {
     assert_eq!(made.code, 0, "{}", made.err);
     let good = fs::read_to_string(folder.path().join("good.nc")).unwrap();
     fs::write(folder.path().join("bad.nc"), good.replacen("M3", "M5", 1)).unwrap();
-    for (files, code) in [(&["good.nc"][..], 0), (&["good.nc", "bad.nc"][..], 1)] {
+    // By hand, with a word that nobody knows.
+    fs::write(folder.path().join("hand.nc"), GOOD.replacen("M8", "M8 M77", 1)).unwrap();
+    for (files, code) in [(&["good.nc", "hand.nc"][..], 0), (&["good.nc", "bad.nc"][..], 1)] {
         let mut words: Vec<&str> = entry.split_whitespace().collect();
-        words.extend(["--tool-length", "100"]);
         words.extend(files);
         let run = post_in(folder.path(), &words);
         assert_eq!(run.code, code, "{files:?}: {}{}", run.out, run.err);

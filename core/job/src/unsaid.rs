@@ -30,6 +30,9 @@ pub struct Unsaid<'a> {
 impl Unsaid<'_> {
     /// All that it leaves unsaid on `machine`.
     pub fn findings(&self, finder: &Finder, machine: &Machine) -> Vec<Diagnostic> {
+        if let Some(empty) = self.empty() {
+            return vec![empty];
+        }
         let mut findings = self.starts();
         findings.extend(self.comes_down());
         findings.extend(self.cut_off());
@@ -53,6 +56,15 @@ impl Unsaid<'_> {
             true => Diagnostic::error(code, message),
             false => Diagnostic::warning(code, message),
         }
+    }
+
+    /// That no block stands in it.
+    fn empty(&self) -> Option<Diagnostic> {
+        self.last_line.filter(|_| self.report.blocks == 0)?;
+        let message = "no block stands in the file: it is empty, or no program";
+        let help =
+            "name the file that the control reads; it may have been cut off as it was written";
+        Some(Diagnostic::error("missing", message).help(help).at(self.at(1)))
     }
 
     /// Where axes stand that it cuts with. That of rotary ones is said elsewhere where a program of another hand turns none.
@@ -172,7 +184,7 @@ impl Unsaid<'_> {
 
     /// That it ends, and what it leaves to whatever runs next.
     pub fn end(&self) -> Option<Diagnostic> {
-        let last_line = self.last_line?;
+        let last_line = self.last_line.filter(|_| self.report.blocks > 0)?;
         let Some(end) = &self.report.end else {
             // A control without such a word ends with the file, and so does one that runs its lines one by one.
             if self.spoken.writes.has(Capabilities::COMMAND_A_LINE) {

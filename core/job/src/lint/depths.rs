@@ -7,7 +7,10 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 use post_machine::description::Machine;
+use post_machine::kinematics::Pose;
 use post_readback::{BlockEffect, Motion, MotionKind};
+
+use super::passes::{Heading, Link, Pass};
 
 /// Edge of a cell at first, mm.
 const FINEST: f64 = 1.0;
@@ -22,13 +25,17 @@ const MOST_DIRECTIONS: usize = 16;
 const MOST_PLACES: f64 = 4096.0;
 
 /// A rapid may end so much below what was cut, mm: the decimals of an inch program.
-const SLACK: f64 = 0.05;
+pub(super) const SLACK: f64 = 0.05;
 
 /// A cut clears so much to each side, mm: half of a small cutter.
 const CLEARED: f64 = 6.0;
 
 /// Places of a rapid from cut to cut that are looked at.
 const LOOKS: usize = 16;
+
+/// Of ways to the depth one of so many goes by rapid by mistake, and of ways at one depth so many; where more do, the
+/// program is written so.
+const FEW: [u64; 2] = [12, 3];
 
 /// Directions of the tool are one if they differ by less than half of a part of so many.
 const DIRECTIONS: f64 = 1000.0;
@@ -38,8 +45,9 @@ const DIRECTIONS: f64 = 1000.0;
 struct Cell {
     /// The highest place at feed of the whole program.
     top: f64,
-    /// The lowest place at feed so far.
+    /// The lowest and the highest place at feed so far.
     low: f64,
+    high: f64,
 }
 
 /// Cuts of one direction of the tool.
@@ -57,10 +65,9 @@ struct Heights {
 /// A rapid that may go where nothing was cut, until the next motion tells.
 #[derive(Clone, Copy, Debug)]
 struct Suspect {
-    line: u64,
-    /// Where it ends below what its surroundings were cut to, mm.
-    below: f64,
-    /// It goes from a cut to a cut, or lower, as long as what follows is a cut that goes no lower.
+    rapid: DeepRapid,
+    /// Where it ends, and the tool axis there: it is one as long as what follows is a cut that goes no lower; none where it
+    /// is one in any case.
     until: Option<(Vector3<f64>, Vector3<f64>)>,
 }
 
@@ -68,9 +75,20 @@ struct Suspect {
 #[derive(Clone, Debug, Default)]
 pub(super) struct CutDepths {
     heights: Vec<([i64; 3], Heights)>,
-    /// The last motion was a cut that ended here.
-    cut: Option<Vector3<f64>>,
+    /// The last motion was a cut that went so.
+    cut: Option<Heading>,
     suspect: Option<Suspect>,
+    /// How the last motion went, if it was a rapid on the part.
+    rapid: Option<Heading>,
+    link: Option<Link>,
+    pass: Option<Pass>,
+    /// Passes that begin by coming down at feed.
+    fed_down: u64,
+    /// Cuts that stay at their depth.
+    level_cuts: u64,
+    /// The first rapid down to the depth of a cut that may be beside the part, and the first across at the depth of cuts;
+    /// how many there are of each.
+    beside: [Option<(u64, u64)>; 2],
     /// Axes that were led to a position of the machine last, a bit by place: where that is on the part is not known.
     strange: u32,
 }
@@ -80,8 +98,27 @@ pub(super) struct CutDepths {
 pub(super) struct DeepRapid {
     /// Its line.
     pub line: u64,
-    /// How far below, mm; zero where it is only level with the cut behind it.
-    pub below: f64,
+    /// What tells so.
+    pub why: Depth,
+}
+
+/// What tells that a rapid goes where nothing was cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Depth {
+    /// It is so much below where cuts come down at feed, mm.
+    Below(f64),
+    /// It goes down to the depth of the cut behind it, or from cut to cut, within what is cut.
+    Level,
+    /// It goes down on a contour that is cut all around from there.
+    Contour,
+    /// It goes down to the depth of the cut behind it, and others come down at feed; it may be beside the part.
+    Down,
+    /// It goes from cut to cut at their depth, and others are cuts; it may be beside the part.
+    Across,
+    /// It goes on down as the rapid before it did, by little, to where a cut begins.
+    Staged,
+    /// It goes on as the cuts before and behind it do.
+    Path,
 }
 
 impl CutDepths {
@@ -115,10 +152,27 @@ impl CutDepths {
         Some(&mut self.heights[place].1)
     }
 
-    /// Takes the next motion; gives a rapid before it that went where nothing was cut, if it was one.
-    pub fn take(&mut self, machine: &Machine, motion: &Motion) -> Option<DeepRapid> {
-        let suspect = self.suspect.take();
-        let found = suspect.and_then(|suspect| suspect.told(motion));
+    /// Takes the next motion; `found` is told of rapids before it that went where nothing was cut.
+    pub fn take(&mut self, machine: &Machine, motion: &Motion, mut found: impl FnMut(DeepRapid)) {
+        let link = self.link.take().filter(|link| link.goes_on_in(motion));
+        let suspect = self.suspect.take().and_then(|suspect| suspect.told(motion));
+        if let Some(rapid) = suspect {
+            if rapid.why == Depth::Down {
+                self.pass = Some(Pass::new(rapid.line, motion));
+            }
+            match rapid.why {
+                Depth::Down | Depth::Across if link.is_some() => {}
+                Depth::Down | Depth::Across => {
+                    let place = usize::from(rapid.why == Depth::Across);
+                    self.beside[place].get_or_insert((rapid.line, 0)).1 += 1;
+                }
+                _ => found(rapid),
+            }
+        }
+        let beside = suspect.is_none_or(|rapid| matches!(rapid.why, Depth::Down | Depth::Across));
+        if let (true, Some(link)) = (beside, link) {
+            found(DeepRapid { line: link.line, why: Depth::Path });
+        }
         let strange = self.strange;
         for place in 0..machine.axes.len() {
             if motion.from.joints[place] != motion.to.joints[place] {
@@ -128,49 +182,99 @@ impl CutDepths {
             }
         }
         if is_cut(motion) {
-            if let Some(heights) = self.heights_of(motion, false) {
-                heights.take(motion, |cell, height| cell.low = cell.low.min(height));
-            }
-            self.cut = Some(motion.to.pose.tip);
-            return found;
+            self.cut(motion, found);
+            return;
         }
-        let cut = self.cut.take();
+        self.pass = None;
+        let (cut, before) = (self.cut.take(), self.rapid.take());
         let linear = machine.axes.iter().enumerate().filter(|(_, axis)| !axis.joint.rotary);
         let linear: u32 = linear.map(|(place, _)| 1 << place).sum();
         let judged = motion.kind == MotionKind::Rapid && !motion.hole && !motion.machine;
         if !judged || self.strange & linear != 0 {
-            return found;
+            return;
+        }
+        let mills = machine.along.is_none() && motion.state.solver.chain().edge().is_none();
+        let heading = Heading::of(motion);
+        self.rapid = Some(heading);
+        if let (true, Some(before)) = (mills, cut) {
+            self.link = Some(Link { line: motion.line, before, way: heading });
         }
         let way = strange & linear == 0 && motion.led & linear == linear;
         if let Some(heights) = self.heights_of(motion, false) {
-            self.suspect = heights.suspect(motion, way, cut.is_some());
+            let suspect = heights.suspect(motion, way, cut.is_some());
+            let beside = |why| matches!(why, Depth::Down | Depth::Across);
+            self.suspect = suspect.filter(|suspect| mills || !beside(suspect.rapid.why));
         }
-        found
+        let known = self.suspect.is_some_and(|suspect| !matches!(suspect.rapid.why, Depth::Down));
+        let staged = mills && before.is_some_and(|before| heading.goes_on_down(before, motion));
+        if staged && !known && self.is_uncut(motion) {
+            let rapid = DeepRapid { line: motion.line, why: Depth::Staged };
+            let Pose { tip, axis, .. } = motion.to.pose;
+            self.suspect = Some(Suspect { rapid, until: Some((tip, axis)) });
+        }
+    }
+
+    /// Nothing was cut so far about the end of a motion that is as low, as far as that is known.
+    fn is_uncut(&mut self, motion: &Motion) -> bool {
+        let tip = motion.to.pose.tip;
+        self.heights_of(motion, false).is_none_or(|heights| {
+            let [across, up, along] = heights.frame;
+            heights.is_uncut([across.dot(&tip), up.dot(&tip)], along.dot(&tip))
+        })
+    }
+
+    /// Takes a cut.
+    fn cut(&mut self, motion: &Motion, mut found: impl FnMut(DeepRapid)) {
+        if let Some(heights) = self.heights_of(motion, false) {
+            heights.take(motion, |cell, height| {
+                (cell.low, cell.high) = (cell.low.min(height), cell.high.max(height));
+            });
+        }
+        self.rapid = None;
+        let heading = Heading::of(motion);
+        let way = motion.to.pose.tip - motion.from.pose.tip;
+        let rises = way.dot(&motion.to.pose.axis);
+        self.fed_down += u64::from(self.cut.is_none() && !motion.hole && rises < -SLACK);
+        self.level_cuts += u64::from(libm::fabs(rises) < SLACK && heading.length > SLACK);
+        // From the bottom of a hole nothing goes across.
+        self.cut = (!motion.hole).then_some(heading);
+        let around = self.pass.as_mut().is_some_and(|pass| pass.is_around(motion, heading));
+        if let Some(pass) = self.pass.take_if(|_| around) {
+            found(DeepRapid { line: pass.line, why: Depth::Contour });
+        }
     }
 
     /// A block was not understood: where the tool stands is not known.
     pub fn miss(&mut self) {
-        self.suspect = None;
-        self.cut = None;
+        (self.suspect, self.link, self.pass) = (None, None, None);
+        (self.cut, self.rapid) = (None, None);
         self.strange = u32::MAX;
     }
 
     /// The program is over.
-    pub fn finish(&mut self) -> Option<DeepRapid> {
-        let Suspect { line, below, until } = self.suspect.take()?;
-        until.is_none().then_some(DeepRapid { line, below })
+    pub fn finish(&mut self, mut found: impl FnMut(DeepRapid)) {
+        if let Some(Suspect { rapid, until: None }) = self.suspect.take() {
+            found(rapid);
+        }
+        let kinds = [(Depth::Down, self.fed_down), (Depth::Across, self.level_cuts)];
+        for ((beside, (why, others)), few) in self.beside.iter().zip(kinds).zip(FEW) {
+            if let Some((line, count)) = *beside
+                && count * few <= others
+            {
+                (0..count).for_each(|_| found(DeepRapid { line, why }));
+            }
+        }
     }
 }
 
 impl Suspect {
-    /// Whether it was one, as the motion behind it tells.
+    /// The rapid, if it was one, as the motion behind it tells.
     fn told(self, next: &Motion) -> Option<DeepRapid> {
-        let Self { line, below, until } = self;
-        let sure = until.is_none_or(|(end, axis)| {
+        let sure = self.until.is_none_or(|(end, axis)| {
             let [from, to] = [next.from.pose.tip, next.to.pose.tip];
             is_cut(next) && (from - end).norm() < SLACK && (to - from).dot(&axis) > -SLACK
         });
-        sure.then_some(DeepRapid { line, below })
+        sure.then_some(self.rapid)
     }
 }
 
@@ -212,7 +316,7 @@ impl Heights {
     /// Does something with the cells that a cut goes through.
     fn take(&mut self, motion: &Motion, change: impl Fn(&mut Cell, f64)) {
         for (flat, height) in self.places(motion) {
-            let none = Cell { top: f64::NEG_INFINITY, low: f64::INFINITY };
+            let none = Cell { top: f64::NEG_INFINITY, low: f64::INFINITY, high: f64::NEG_INFINITY };
             let key = self.key(flat);
             change(self.cells.entry(key).or_insert(none), height);
             for (extent, at) in self.extents.iter_mut().zip(flat) {
@@ -225,6 +329,7 @@ impl Heights {
                 let kept = self.cells.entry(key.map(|at| at.div_euclid(2))).or_insert(cell);
                 kept.top = kept.top.max(cell.top);
                 kept.low = kept.low.min(cell.low);
+                kept.high = kept.high.max(cell.high);
             }
         }
     }
@@ -248,6 +353,12 @@ impl Heights {
         })
     }
 
+    /// A cut came down here at feed before, and not as low.
+    fn is_plunged(&self, flat: [f64; 2], height: f64) -> bool {
+        let known = self.cells.get(&self.key(flat));
+        known.is_some_and(|Cell { low, high, .. }| *high > low + self.cell && height < low - SLACK)
+    }
+
     /// Whether a rapid goes where nothing was cut before: on its `way`, or where it ends; `cut` says that it begins where a
     /// cut ended.
     fn suspect(&self, motion: &Motion, way: bool, cut: bool) -> Option<Suspect> {
@@ -258,6 +369,9 @@ impl Heights {
         let looked = if way { &places[..] } else { &places[places.len() - 1..] };
         let is_deep =
             |flat: [f64; 2], height: f64| self.is_inside(flat) && self.is_uncut(flat, height);
+        let is_level = |flat: [f64; 2], height: f64| {
+            is_deep(flat, height) || self.is_plunged(flat, height) && self.is_uncut(flat, height)
+        };
         let mut below: f64 = 0.0;
         for (flat, height) in looked {
             let top = self.cells.get(&self.key(*flat)).map_or(f64::NEG_INFINITY, |cell| cell.top);
@@ -268,21 +382,28 @@ impl Heights {
         }
         let line = motion.line;
         if below > 0.0 {
-            return Some(Suspect { line, below, until: None });
+            return Some(Suspect {
+                rapid: DeepRapid { line, why: Depth::Below(below) },
+                until: None,
+            });
         }
-        let some = looked.iter().rev().step_by(looked.len().div_ceil(LOOKS));
-        let level = match rises < -SLACK {
-            true => some.take(1).any(|(flat, height)| is_deep(*flat, *height)),
-            false => {
-                let mut some = some;
-                cut && rises < SLACK && some.any(|(flat, height)| is_deep(*flat, *height))
-            }
+        let sinks = rises < -SLACK;
+        if !sinks && !(cut && rises < SLACK) {
+            return None;
+        }
+        let looks = if sinks { 1 } else { LOOKS };
+        let some = looked.iter().rev().step_by(looked.len().div_ceil(LOOKS)).take(looks);
+        let why = match () {
+            () if some.clone().any(|(flat, height)| is_level(*flat, *height)) => Depth::Level,
+            () if !some.clone().any(|(flat, height)| self.is_uncut(*flat, *height)) => return None,
+            () if sinks => Depth::Down,
+            () => Depth::Across,
         };
-        level.then_some(Suspect { line, below: 0.0, until: Some((end, axis)) })
+        Some(Suspect { rapid: DeepRapid { line, why }, until: Some((end, axis)) })
     }
 }
 
 /// Something is cut on a motion, as far as the program says.
-fn is_cut(motion: &Motion) -> bool {
+pub(super) fn is_cut(motion: &Motion) -> bool {
     motion.kind != MotionKind::Rapid && !motion.fast && !motion.machine
 }

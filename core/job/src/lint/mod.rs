@@ -4,10 +4,14 @@
 //! |---|---|
 //! | `watch` | spindle, coolant, tool length, feed and arcs at each motion |
 //! | `depths` | rapids that go lower than anything was cut before |
+//! | `passes` | rapids that go on as the cuts beside them do, and contours that begin with a rapid |
+//! | `stray` | points far beside their neighbours |
 //! | `summary`, `sarif` | what was found, for programs to read |
 
 mod depths;
+mod passes;
 mod sarif;
+mod stray;
 mod summary;
 mod watch;
 
@@ -176,7 +180,7 @@ pub fn look_over<'m>(
     found.extend(nc_program::unknown_words(name, &report, machine));
     found.extend(beyond.findings(name));
     found.extend(beyond.part_place(machine, name));
-    found.extend(watch.finish(name));
+    found.extend(watch.finish(name, &report));
     found.extend(fed_rapid(name, &report, &survey));
     found.extend(undrawn);
     before.extend(clear.map(|clear| clear.findings).unwrap_or_default());

@@ -7,11 +7,13 @@ use post_machine::check::number;
 use post_machine::description::LengthAxis;
 use post_machine::diagnostic::{Diagnostic, Severity, SourcePlace};
 use post_plugin::Lengths;
+use post_readback::interpret::ReadReport;
 use post_readback::{
     BlockEffect, Coolants, Curve, Leeway, Motion, MotionKind, ProgramEvent, SpindleState,
 };
 
-use super::depths::{CutDepths, DeepRapid};
+use super::depths::{CutDepths, DeepRapid, Depth};
+use super::stray::{StrayPoint, StrayPoints};
 use crate::nc_program::NcControl;
 
 /// Ends of an arc that are so near to one another, mm, are one point or two as rounding has it; nearer than the second of
@@ -35,6 +37,9 @@ enum Rule {
     FullCircle,
     Rapid,
     Smoothing,
+    NotChanged,
+    StrayPoint,
+    Idle,
 }
 
 /// How a rule is told.
@@ -79,6 +84,17 @@ impl Rule {
                 "smoothing",
                 "less of it, or [accuracy] and [program.smoothing] of the machine file as large as what is meant",
             ),
+            Self::Idle => (Warning, "rapid", "G1 and F where it cuts"),
+            Self::StrayPoint => (
+                Warning,
+                "stray-point",
+                "look at its digits and signs; --ignore stray-point where the tool goes out and back",
+            ),
+            Self::NotChanged => (
+                Error,
+                "tool",
+                "M6 beside T or behind it; --ignore tool where tools are made ready for the next program",
+            ),
         };
         RuleText { severity, code, help }
     }
@@ -103,6 +119,28 @@ struct RegisterUse {
     line: u64,
 }
 
+/// A tool that is made ready.
+#[derive(Clone, Copy, Debug)]
+struct ReadyTool {
+    number: u32,
+    line: u64,
+    /// Something is cut behind it.
+    cuts: bool,
+    /// Something is cut behind it with the length in the register of its number, which was not in force before.
+    has_length: bool,
+}
+
+/// A tool that moves so often at rapid with the spindle on is to cut.
+const IDLE: u64 = 4;
+
+/// What a tool has done since it was changed in.
+#[derive(Clone, Copy, Debug, Default)]
+struct ToolWork {
+    cuts: bool,
+    /// Line of its first rapid on the part with the spindle on, and how many there are.
+    rapids: Option<(u64, u64)>,
+}
+
 /// What is looked at along a program.
 pub(super) struct LintWatch<'m> {
     control: &'m NcControl,
@@ -110,6 +148,14 @@ pub(super) struct LintWatch<'m> {
     broken: Vec<Broken>,
     /// Tools before the one in the spindle, and it.
     tools: [Option<u32>; 2],
+    /// A tool that is made ready and was not brought so far.
+    ready: Option<ReadyTool>,
+    /// The tool that was changed in first.
+    first_tool: Option<u32>,
+    /// What the tool in the spindle has done.
+    work: ToolWork,
+    /// Tools that come down without a length, each with the work offset that it goes by.
+    bare: Vec<(Option<u32>, Option<String>)>,
     /// The length of the tool was not looked at since it was changed.
     new_tool: bool,
     /// How far the control may leave the path, mm.
@@ -129,8 +175,9 @@ pub(super) struct LintWatch<'m> {
     speeds: BTreeMap<u64, bool>,
     /// Some block was not understood: it may have said a feed.
     missed: bool,
-    /// The deepest rapid, and how many there are.
-    deepest: Option<(DeepRapid, u64)>,
+    stray: StrayPoints,
+    /// The deepest rapid, or the first, of each kind, and how many there are.
+    rapids: Vec<(DeepRapid, u64)>,
 }
 
 impl<'m> LintWatch<'m> {
@@ -140,6 +187,10 @@ impl<'m> LintWatch<'m> {
             depths,
             broken: Vec::new(),
             tools: [None; 2],
+            ready: None,
+            first_tool: None,
+            work: ToolWork::default(),
+            bare: Vec::new(),
             new_tool: true,
             leeway: Leeway::default(),
             had_length: false,
@@ -153,7 +204,8 @@ impl<'m> LintWatch<'m> {
             registers: Vec::new(),
             speeds: BTreeMap::new(),
             missed: false,
-            deepest: None,
+            stray: StrayPoints::default(),
+            rapids: Vec::new(),
         }
     }
 
@@ -170,8 +222,9 @@ impl<'m> LintWatch<'m> {
     /// A block was not understood: of what it would have changed nothing is told.
     pub fn miss(&mut self) {
         self.missed = true;
-        (self.new_tool, self.had_length) = (false, false);
+        (self.new_tool, self.had_length, self.work.cuts) = (false, false, true);
         self.depths.iter_mut().for_each(CutDepths::miss);
+        self.stray.miss();
     }
 
     /// Takes what the program did next.
@@ -179,12 +232,22 @@ impl<'m> LintWatch<'m> {
         match done {
             BlockEffect::Motion(motion) => self.motion(motion),
             BlockEffect::Event { event: ProgramEvent::ToolChange { number, .. }, .. } => {
+                self.left_ready(*number);
+                self.left_idle();
+                self.first_tool = self.first_tool.or(*number);
                 if *number != self.tools[1] || number.is_none() {
                     self.tools = [self.tools[1], *number];
                     self.cooled = false;
                 }
                 self.new_tool = true;
                 self.had_length = false;
+            }
+            BlockEffect::Event { event: ProgramEvent::Preselect(number), line } => {
+                self.left_ready(Some(*number));
+                let new = *number != 0 && self.tools[1] != Some(*number);
+                let (number, line) = (*number, *line);
+                self.ready =
+                    new.then_some(ReadyTool { number, line, cuts: false, has_length: false });
             }
             BlockEffect::Event { event: ProgramEvent::Coolant(flows), .. } => {
                 self.cooled |= *flows != Coolants::default();
@@ -193,10 +256,58 @@ impl<'m> LintWatch<'m> {
         }
     }
 
+    /// The tool `next` comes, or is made ready, or none behind the end: the one that was made ready before it should have
+    /// been brought, if something was cut since. At the end of a program the first tool of the next run, or of another
+    /// program, is made ready as well.
+    fn left_ready(&mut self, next: Option<u32>) {
+        let Some(ready) = self.ready.take().filter(|ready| ready.cuts) else {
+            return;
+        };
+        let ReadyTool { number, line, has_length, .. } = ready;
+        let is_next = match next {
+            Some(_) => next == Some(number),
+            None => self.first_tool == Some(number) && !has_length,
+        };
+        if !is_next {
+            let with = match self.tools[1] {
+                Some(tool) => format!("tool {tool} cuts on"),
+                None => "what is in the spindle cuts".to_owned(),
+            };
+            let message = format!("tool {number} is made ready, and no word changes it in: {with}");
+            self.tell(Rule::NotChanged, line, message);
+        }
+    }
+
+    /// The tool goes: did it cut?
+    fn left_idle(&mut self) {
+        let ToolWork { cuts, rapids } = std::mem::take(&mut self.work);
+        if let (false, Some((line, count))) = (cuts, rapids)
+            && count >= IDLE
+        {
+            let tool =
+                self.tools[1].map_or_else(|| "the tool".to_owned(), |tool| format!("tool {tool}"));
+            let message = format!("{tool} moves at rapid alone and cuts nothing, its spindle on");
+            self.tell(Rule::Idle, line, message);
+        }
+    }
+
+    /// Counts what the tool does.
+    fn work(&mut self, motion: &Motion) {
+        let turns = !matches!(motion.state.spindle, SpindleState::Off | SpindleState::Oriented);
+        if motion.kind != MotionKind::Rapid {
+            self.work.cuts = true;
+        } else if turns && !motion.machine {
+            self.work.rapids.get_or_insert((motion.line, 0)).1 += 1;
+        }
+    }
+
     fn motion(&mut self, motion: &Motion) {
-        let deep =
-            self.depths.as_mut().and_then(|depths| depths.take(&self.control.machine, motion));
-        self.deep_rapid(deep);
+        self.work(motion);
+        if let Some(depths) = &mut self.depths {
+            let rapids = &mut self.rapids;
+            depths.take(&self.control.machine, motion, |rapid| note_rapid(rapids, rapid));
+        }
+        self.stray.take(motion);
         if motion.machine {
             return;
         }
@@ -212,6 +323,10 @@ impl<'m> LintWatch<'m> {
         {
             self.tell(Rule::NoFeed, motion.line, "cuts without a feed: F is missing, or 0");
         }
+        if let Some(ready) = &mut self.ready {
+            ready.cuts = true;
+            ready.has_length |= motion.state.length_register == Some(ready.number);
+        }
         self.arc(motion);
         self.smoothing(motion);
         // Up and away it cuts no more than before.
@@ -222,32 +337,43 @@ impl<'m> LintWatch<'m> {
         }
     }
 
-    fn deep_rapid(&mut self, deep: Option<DeepRapid>) {
-        let Some(deep) = deep else {
-            return;
-        };
-        let (known, count) = self.deepest.get_or_insert((deep, 0));
-        *count += 1;
-        if deep.below > known.below {
-            *known = deep;
-        }
-    }
-
     fn tell_rapids(&mut self) {
-        let Some((DeepRapid { line, below }, count)) = self.deepest else {
-            return;
-        };
-        let message = match below > 0.0 {
-            true => format!(
-                "a rapid goes {} mm below where cuts come down at feed, and nothing was cut there before",
-                number(below, 3)
-            ),
-            false => {
-                "a rapid goes to the depth of the cut that follows, where nothing was cut before"
-                    .to_owned()
-            }
-        };
-        self.broken.push(Broken { rule: Rule::Rapid, line, message, count });
+        if let Some(depths) = &mut self.depths {
+            let rapids = &mut self.rapids;
+            depths.finish(|rapid| note_rapid(rapids, rapid));
+        }
+        for (DeepRapid { line, why }, count) in std::mem::take(&mut self.rapids) {
+            let message = match why {
+                Depth::Below(below) => format!(
+                    "a rapid goes {} mm below where cuts come down at feed, and nothing was cut there before",
+                    number(below, 3)
+                ),
+                Depth::Level => {
+                    "a rapid goes to the depth of the cut that follows, where nothing was cut before"
+                        .to_owned()
+                }
+                Depth::Contour => {
+                    "a rapid goes to the depth of the contour that follows, on the contour itself, where nothing was cut before"
+                        .to_owned()
+                }
+                Depth::Down => {
+                    "a rapid goes to the depth of the cut that follows, where others come down at feed: it may only beside the part"
+                        .to_owned()
+                }
+                Depth::Across => {
+                    "a rapid goes from cut to cut at their depth, where nothing was cut before: it may only beside the part"
+                        .to_owned()
+                }
+                Depth::Staged => {
+                    "a rapid goes on from close above to where a cut begins, and nothing was cut there before: is it to come down at feed?"
+                        .to_owned()
+                }
+                Depth::Path => {
+                    "a rapid goes on as the cuts before and behind it do: is it one of them?".to_owned()
+                }
+            };
+            self.broken.push(Broken { rule: Rule::Rapid, line, message, count });
+        }
     }
 
     /// Whether the control may leave the path by more than the tolerance of the machine file.
@@ -288,6 +414,7 @@ impl<'m> LintWatch<'m> {
                 Some(tool) => format!("tool {tool} comes down, and no length of it is in force"),
                 None => "the tool comes down, and no length of it is in force".to_owned(),
             };
+            self.bare.push((state.tool, state.work_offset.clone()));
             self.tell(Rule::NoLength, motion.line, message);
         }
         if cuts && !stated && std::mem::take(&mut self.had_length) {
@@ -412,22 +539,44 @@ impl<'m> LintWatch<'m> {
         }
     }
 
-    /// What is wrong with the program `name`.
-    pub fn finish(mut self, name: &str) -> Vec<Diagnostic> {
-        let deep = self.depths.as_mut().and_then(CutDepths::finish);
-        self.deep_rapid(deep);
+    /// Two tools go by one work offset without a length: it can be measured with one of them alone.
+    fn shares_an_offset(&self) -> bool {
+        self.bare.iter().any(|(tool, offset)| {
+            let mut others = self.bare.iter();
+            tool.is_some()
+                && others.any(|(other, known)| other.is_some() && other != tool && known == offset)
+        })
+    }
+
+    /// What is wrong with the program `name`, of which `report` tells the rest.
+    pub fn finish(mut self, name: &str, report: &ReadReport) -> Vec<Diagnostic> {
+        self.left_ready(None);
+        self.left_idle();
         self.tell_rapids();
         self.tell_registers();
+        if let Some((StrayPoint { line, aside }, count)) = self.stray.finish() {
+            let message = format!(
+                "a point stands {} mm beside the points before and behind it, which are near to one another",
+                number(aside, 3)
+            );
+            self.broken.push(Broken { rule: Rule::StrayPoint, line, message, count });
+        }
+        // H alone, without the word that it belongs to.
+        let names_length = report.unknown.iter().any(|(word, ..)| word == "H");
         let told = self.broken.iter().map(|Broken { rule, line, message, count }| {
             let message = match count {
                 1 => message.clone(),
                 count => format!("{message}; so in {count} motions"),
             };
             let told = rule.told();
-            // Of a program that never says it, somebody else does.
+            // Of a program that has no word of it anywhere somebody else may see to it: a spindle switched on by hand, a
+            // work offset measured with the one tool, which is in the spindle already.
             let never = match rule {
-                Rule::SpindleStands => !self.turns,
-                Rule::NoLength => !self.has_lengths,
+                Rule::SpindleStands => {
+                    !self.turns && report.speed.is_none() && self.first_tool.is_none()
+                }
+                Rule::NoLength => !self.has_lengths && !names_length && !self.shares_an_offset(),
+                Rule::NotChanged => self.first_tool.is_none(),
                 _ => false,
             };
             let severity = if never { Severity::Warning } else { told.severity };
@@ -436,5 +585,23 @@ impl<'m> LintWatch<'m> {
             Diagnostic { severity, ..finding }
         });
         told.collect()
+    }
+}
+
+/// Counts a rapid among those of its kind, of which the deepest is kept, or the first.
+fn note_rapid(rapids: &mut Vec<(DeepRapid, u64)>, rapid: DeepRapid) {
+    use std::mem::discriminant;
+    let same =
+        |(known, _): &&mut (DeepRapid, u64)| discriminant(&known.why) == discriminant(&rapid.why);
+    match rapids.iter_mut().find(same) {
+        None => rapids.push((rapid, 1)),
+        Some((known, count)) => {
+            *count += 1;
+            if let (Depth::Below(deeper), Depth::Below(known_below)) = (rapid.why, known.why)
+                && deeper > known_below
+            {
+                *known = rapid;
+            }
+        }
     }
 }

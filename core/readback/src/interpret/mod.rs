@@ -118,6 +118,8 @@ pub struct ReadReport {
     pub unretracted: Option<(u64, String)>,
     /// How the program ends; none: no word of it does that.
     pub end: Option<ModesInForce>,
+    /// The first line that names a speed of the spindle above zero.
+    pub speed: Option<u64>,
     /// Line of the first rapid in whose block a feed stands, and how many there are.
     pub fed_rapids: Option<(u64, u64)>,
     /// The first tool change with something in force that controls want ended before.

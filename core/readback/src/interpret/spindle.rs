@@ -22,7 +22,7 @@ impl ControlState {
         let kept = std::mem::take(&mut self.modal.kept_speed) && asked.spindle.is_none();
         let speed = words.take(b'S');
         if let Some(speed) = speed {
-            self.modal.speed = speed;
+            self.name_speed(speed);
         }
         if speed.is_some() || kept {
             // Beside a word that turns it the new speed never has the old sense.
@@ -56,6 +56,14 @@ impl ControlState {
             None => {}
         }
         Ok(())
+    }
+
+    /// S: the spindle's speed from here on, revolutions a minute or of the cut.
+    pub(super) fn name_speed(&mut self, speed: f64) {
+        self.modal.speed = speed;
+        if speed > 0.0 {
+            self.report.speed.get_or_insert(self.line);
+        }
     }
 
     /// The program stops: where the control stops the spindle and the coolant with it, what is on now is off behind it.

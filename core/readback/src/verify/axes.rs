@@ -196,11 +196,12 @@ impl AxisLimitCheck {
         None
     }
 
-    /// What is to be said of travel at the end, where the part may sit anywhere: that it fits nowhere, with the line that
-    /// says so, or how much the program needs.
+    /// What is to be said of travel at the end, where the part may sit anywhere: that it fits nowhere, or how much the
+    /// program needs; with the line that leads farthest out along the first axis of which that is said.
     pub fn part_place(&self, machine: &Machine) -> Option<(u64, Diagnostic)> {
         let found = &self.anywhere.as_ref()?.ends;
         let mut outside = Vec::new();
+        let mut line = 0;
         for (joint, axis) in machine.axes.iter().enumerate() {
             let Some(ends) = found.of(joint) else {
                 continue;
@@ -213,9 +214,15 @@ impl AxisLimitCheck {
                 let [first, last] = lines.map(|line| line.to_string());
                 return Some((lines[0].max(lines[1]), way.too_long([&first, &last])));
             }
-            outside.extend(way.outside(machine));
+            if let Some(outside_by) = way.outside(machine) {
+                if let (true, Some([least, most])) = (outside.is_empty(), travel) {
+                    let upwards = ends[1] - most > least - ends[0];
+                    line = found.lines(joint)[usize::from(upwards)];
+                }
+                outside.push(outside_by);
+            }
         }
-        (!outside.is_empty()).then(|| (0, needed(&outside, "")))
+        (!outside.is_empty()).then(|| (line, needed(&outside, "")))
     }
 
     /// An axis passes its largest feed, if the control does what the program says; `bend` is [`bend_between_words`] of the

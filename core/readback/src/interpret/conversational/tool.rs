@@ -17,7 +17,7 @@ pub(super) fn call(
     said.only(control, &["X", "Y", "Z", "U", "V", "W"], &["DL", "DR", "DR2"])?;
     let across = across(control, said)?;
     if let Some(speed) = words.take(b'S') {
-        control.modal.speed = speed;
+        control.name_speed(speed);
         control.speed_changed();
     }
     if let Some(feed) = words.take(b'F') {

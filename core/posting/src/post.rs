@@ -473,7 +473,7 @@ impl<'a> Post<'a> {
             let file = self.findings.file();
             self.findings.add(
                 Diagnostic::error("empty", format!("{file} has no move"))
-                    .help("is it a cutter-location file (APT, CLSF, NCL)?"),
+                    .help("is it a cutter-location file (APT, CLSF, NCL), or a list of points?"),
             );
         }
         if let Some(warning) = self.stages.timing.low_feeds() {

@@ -131,48 +131,38 @@ impl JsonList {
         (!told).then_some(self.end..self.end)
     }
 
-    /// Takes the next value of each column.
+    /// Takes the next value of each column. What cannot be read ends the list.
     fn take_across(&mut self, text: &str) -> Read<Option<Range<usize>>> {
-        let (mut cells, mut spans, mut over) = (Vec::new(), Vec::new(), 0);
-        for track in &mut self.tracks {
+        let mut tracks = std::mem::take(&mut self.tracks);
+        let (mut cells, mut spans, mut over) = (Vec::new(), Vec::new(), None);
+        for track in &mut tracks {
             let mut cursor = JsonCursor { text, at: *track };
             cursor.blanks();
+            // Behind a comma a value stands.
             if cursor.taken(b']') && !text[..*track].ends_with(',') {
-                spans.push(*track..cursor.at);
-                over += 1;
+                over = Some(cursor.at - 1..cursor.at);
                 continue;
             }
             let mut cursor = JsonCursor { text, at: *track };
             let value = cursor.value(0)?;
             spans.push(value.span.clone());
             cells.push(cell(value)?);
-            // The bracket that closes stays for the next time.
             cursor.blanks();
-            *track = match cursor.peek() {
-                Some(b']') => cursor.at,
-                _ => {
-                    cursor.separated(b']')?;
-                    cursor.at
-                }
-            };
+            // The bracket that closes stays for the next time.
+            if cursor.peek() != Some(b']') {
+                cursor.separated(b']')?;
+            }
+            *track = cursor.at;
         }
         match over {
-            0 => {}
-            _ if cells.is_empty() => {
-                self.tracks.clear();
-                return Ok(self.close());
-            }
-            _ => {
-                self.tracks.clear();
-                let ended = spans.iter().find(|span| text[..span.end].ends_with(']'));
+            None => {}
+            Some(_) if cells.is_empty() => return Ok(self.close()),
+            Some(end) => {
                 let message = "this column ends before others do";
-                return wrong(
-                    ended.cloned().unwrap_or_default(),
-                    message,
-                    "as many values in each",
-                );
+                return wrong(end, message, "as many values in each");
             }
         }
+        self.tracks = tracks;
         let span = spans[0].clone();
         let columns = self.columns.as_ref().map(|columns| columns.row(&cells));
         if let Some(row) = columns {

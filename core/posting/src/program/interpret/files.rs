@@ -42,7 +42,7 @@ impl ClInterpreter {
         self.left_open();
         if !self.moved {
             let message = "the file has no move";
-            let help = "is it a cutter-location file (APT, CLSF, NCL)? Leave it out of the program";
+            let help = "is it a cutter-location file (APT, CLSF, NCL), or a list of points? Leave it out of the program";
             self.findings.push(Diagnostic::error("empty", message).help(help));
         }
     }

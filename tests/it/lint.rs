@@ -166,7 +166,7 @@ fn rapids_in_the_place_of_cuts_are_told() {
     let (_folder, _, found) = linted(&around, "", &[]);
     assert_eq!(told(&found), [("rapid".to_owned(), 10)], "{found:#}");
     let (_folder, _, found) = linted(&waves.replacen("G1 Z-2. F300.", "Z-2.", 1), "", &[]);
-    assert_eq!(told(&found), [("rapid".to_owned(), 8)], "{found:#}");
+    assert_eq!(told(&found), [("rapid".to_owned(), 9)], "{found:#}");
     // One digit of a dense path: out and back again.
     let (_folder, _, found) = linted(&waves.replacen("X30.000", "X39.000", 1), "", &[]);
     assert!(told(&found).contains(&("stray-point".to_owned(), 42)), "{found:#}");

@@ -39,7 +39,7 @@ const KINDS: [Kind; 12] = [
         floor: 95,
         spoil: |line, _| without(line, &["M3", "M4"]),
     },
-    Kind { name: "a rapid in the place of a cut", floor: 20, spoil: hasty },
+    Kind { name: "a rapid in the place of a cut", floor: 70, spoil: hasty },
     Kind {
         name: "the length not called",
         floor: 95,

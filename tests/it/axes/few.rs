@@ -164,7 +164,7 @@ fn across_the_pole(step: f64, first: f64, azimuth: f64, bowl: bool) -> Vec<Pose>
         let x = first - step * f64::from(place);
         let (lean, up) = (side * x / 60.0, libm::sqrt(3600.0 - x * x) / 60.0);
         let tip = V::new(cosine * x, sine * x, 100.0 + side * 60.0 * (up - 1.0));
-        Pose { tip, axis: V::new(cosine * lean, sine * lean, up), ..Pose::default() }
+        Pose { tip, axis: V::new(cosine * lean, sine * lean, up), edge: V::zeros() }
     };
     (0..=count).map(at).collect()
 }

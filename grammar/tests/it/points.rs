@@ -64,11 +64,11 @@ fn a_header_and_rows_are_a_cl_file() {
                 0,0,5,0,0,1,,\n# an arc it is not\n1,0,0,0.1,0,1,,0\n2,0,0,0,0,1,4,false\n3,0,0,0,0,1,8,\n\
                 \n3,0,9,0,0,1,4,TRUE\n\n";
     let records = [
-        (7, "PARTNO blade"),
-        (7, "UNITS/INCH"),
-        (7, "LOADTL/3"),
-        (7, "SPINDL/RPM,6000,CLW"),
-        (7, "COOLNT/FLOOD"),
+        (5, "PARTNO blade"),
+        (1, "UNITS/INCH"),
+        (2, "LOADTL/3"),
+        (3, "SPINDL/RPM,6000,CLW"),
+        (4, "COOLNT/FLOOD"),
         (8, "RAPID"),
         (8, "GOTO/0,0,5,0,0,1"),
         (10, "FEDRAT/8,PERMIN"),

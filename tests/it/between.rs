@@ -154,12 +154,12 @@ fn an_operation_is_told_its_tool_and_its_feed() {
 fn slides_that_come_to_lie_in_one_plane_between_the_words_are_told() {
     let machine = "name = \"planer\"\nchain = \"[w Y' A' b Z X C B (S) t]\"\n\
         workpiece = { mount = [0, 0, 0] }\ntool = { gauge = [0, 0, 341] }\n\
-        axis.Y = { linear = \"Y\", travel = [-1000, 1000] }\n\
-        axis.A = { rotary = \"X\", point = [0, 0, 0], travel = [-400, 400] }\n\
-        axis.Z = { linear = \"Z\", travel = [-1000, 1000] }\n\
-        axis.X = { linear = \"X\", travel = [-1000, 1000] }\n\
-        axis.C = { rotary = \"Z\", point = [0, 0, 493], travel = [-400, 400] }\n\
-        axis.B = { rotary = \"Y\", point = [0, 0, 419], travel = [-400, 400], reversed = true }\n\
+        axis.Y = { linear = [0, 1, 0], travel = [-1000, 1000] }\n\
+        axis.A = { rotary = [1, 0, 0], point = [0, 0, 0], travel = [-400, 400] }\n\
+        axis.Z = { linear = [0, 0, 1], travel = [-1000, 1000] }\n\
+        axis.X = { linear = [1, 0, 0], travel = [-1000, 1000] }\n\
+        axis.C = { rotary = [0, 0, 1], point = [0, 0, 493], travel = [-400, 400] }\n\
+        axis.B = { rotary = [0, 1, 0], point = [0, 0, 419], travel = [-400, 400], reversed = true }\n\
         control = { leave = { along = \"tool\", distance = 40.0 }, dialect = \"fanuc\", tcp = \"control\" }\n\
         accuracy = { tolerance = 0.005 }\n";
     let cl = "LOADTL/1\nSPINDL/5000,CLW\nFEDRAT/800,MMPM\n\

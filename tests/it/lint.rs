@@ -138,7 +138,8 @@ fn rapids_in_the_place_of_cuts_are_told() {
     let end = "G0 Z50.\nM5\nG49\nG53 G0 Z0.\nM30\n%\n";
     // A pocket in two depths, in rows from its corner.
     let rows = |z: f64| {
-        let row = |at: u32| format!("Y{}.\nX{}.\n", 5 * at, if at % 2 == 0 { 0 } else { 40 });
+        let row =
+            |at: u32| format!("Y{}.\nX{}.\n", 5 * at, if at.is_multiple_of(2) { 0 } else { 40 });
         let rows: String = (1..7).map(row).collect();
         format!("G1 Z{z:.1} F300.\nX40.\nX0.\n{rows}G0 Z2.\nX0. Y0.\n")
     };
@@ -174,8 +175,9 @@ fn rapids_in_the_place_of_cuts_are_told() {
     let across = GOOD.replacen("G1 Y40.\nX0.", "G1 Y40.\nG0 X0.\nG1", 1);
     let (_folder, _, found) = linted(&across, "", &[]);
     assert_eq!(told(&found), [("rapid".to_owned(), 16)], "{found:#}");
-    let face =
-        |at: u32| format!("G0 Y{}.\nG1 X{}. F300.\n", 10 * at, if at % 2 == 0 { 60 } else { -10 });
+    let face = |at: u32| {
+        format!("G0 Y{}.\nG1 X{}. F300.\n", 10 * at, if at.is_multiple_of(2) { 60 } else { -10 })
+    };
     let faces: String = (0..5).map(face).collect();
     let facing = format!("{begin}G0 X-10.\nZ-0.5\n{faces}{end}");
     let (_folder, code, found) = linted(&facing, "", &["--strict"]);

@@ -388,7 +388,7 @@ impl Heights {
             });
         }
         let sinks = rises < -SLACK;
-        if !sinks && !(cut && rises < SLACK) {
+        if !(sinks || cut && rises < SLACK) {
             return None;
         }
         let looks = if sinks { 1 } else { LOOKS };

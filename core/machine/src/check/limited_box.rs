@@ -103,7 +103,7 @@ impl Search<'_> {
 
     /// How fast the tip goes towards a side, by a joint: sides are X-, X+, Y-, Y+, Z-, Z+.
     fn rate(&self, side: usize, joint: usize) -> f64 {
-        let sign = if side % 2 == 0 { -1.0 } else { 1.0 };
+        let sign = if side.is_multiple_of(2) { -1.0 } else { 1.0 };
         sign * self.ways[joint][side / 2]
     }
 

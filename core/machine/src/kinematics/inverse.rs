@@ -65,7 +65,7 @@ fn numeric_form(
     chain: &Chain,
     freedom: &Freedom,
     quills: bool,
-    sliding: Option<Linear>,
+    sliding: Option<Box<Linear>>,
 ) -> Result<SolutionMethod, NoClosedForm> {
     let Freedom { rotary, still, held, .. } = freedom;
     let slides = |joint: &usize| !chain.joints()[*joint].rotary;
@@ -112,10 +112,6 @@ fn searched(chain: &Chain, rotary: &[usize]) -> bool {
 
 /// The way to the solution.
 #[derive(Clone, Debug)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is one a machine, and a box would cost every point"
-)]
 pub(super) enum SolutionMethod {
     Closed {
         orientation: Orientation,
@@ -129,7 +125,7 @@ pub(super) enum SolutionMethod {
         free: Vec<usize>,
         linear: Vec<usize>,
         /// The three linear axes that place the tip, wherever the rotary ones stand, if nothing else slides.
-        sliding: Option<Linear>,
+        sliding: Option<Box<Linear>>,
         planar: Option<Box<Planar>>,
         surplus: Vec<usize>,
         /// The chain with an edge on its tool, where the turn about a tool that turns is one of them.
@@ -160,7 +156,7 @@ impl Solver {
                 if !freedom.seconds.is_empty() {
                     return Err(NoClosedForm::RotaryAxes { joints: freedom.rotary.clone() });
                 }
-                let sliding = Some(linear).filter(|linear| !linear.more);
+                let sliding = Some(linear).filter(|linear| !linear.more).map(Box::new);
                 numeric_form(&chain, freedom, false, sliding)?
             }
             Ok(linear) => {
@@ -258,7 +254,7 @@ impl Solver {
                 self.standing.as_ref().map(|standing| (&standing.0, &standing.1))
             }
             SolutionMethod::Numeric { sliding, .. } => {
-                sliding.as_ref().map(|linear| (&self.chain, linear))
+                sliding.as_deref().map(|linear| (&self.chain, linear))
             }
         }
     }

@@ -17,6 +17,7 @@ pub const SUFFIX: &str = ".tmp";
 pub const FORMER: &str = ".old";
 
 /// How many letters of a temporary file's name are drawn.
+#[cfg(unix)]
 const DRAWN: usize = 6;
 
 /// End of the names that what stood at `target` has beside it: which file it was stands in it, as a file that nothing

@@ -10,7 +10,7 @@ use post_machine::description::Machine;
 use post_machine::kinematics::Pose;
 use post_readback::{BlockEffect, Motion, MotionKind};
 
-use super::passes::{Heading, Link, Pass};
+use super::passes::{Heading, Link, Pass, SLACK, is_cut};
 
 /// Edge of a cell at first, mm.
 const FINEST: f64 = 1.0;
@@ -23,9 +23,6 @@ const MOST_DIRECTIONS: usize = 16;
 
 /// Places of a motion that are looked at, at most.
 const MOST_PLACES: f64 = 4096.0;
-
-/// A rapid may end so much below what was cut, mm: the decimals of an inch program.
-pub(super) const SLACK: f64 = 0.05;
 
 /// A cut clears so much to each side, mm: half of a small cutter.
 const CLEARED: f64 = 6.0;
@@ -401,9 +398,4 @@ impl Heights {
         };
         Some(Suspect { rapid: DeepRapid { line, why }, until: Some((end, axis)) })
     }
-}
-
-/// Something is cut on a motion, as far as the program says.
-pub(super) fn is_cut(motion: &Motion) -> bool {
-    motion.kind != MotionKind::Rapid && !motion.fast && !motion.machine
 }

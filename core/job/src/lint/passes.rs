@@ -1,9 +1,10 @@
 //! How cuts and rapids follow one another: a rapid that is one path with its neighbours, a pass that ends where it began.
 
 use nalgebra::Vector3;
-use post_readback::Motion;
+use post_readback::{Motion, MotionKind};
 
-use super::depths::{SLACK, is_cut};
+/// A rapid may end so much below what was cut, mm: the decimals of an inch program.
+pub(super) const SLACK: f64 = 0.05;
 
 /// A move that is shorter has no direction, mm.
 const SHORT: f64 = 1e-6;
@@ -22,6 +23,11 @@ const ALIGNED: f64 = 0.9999;
 
 /// A way out that goes back on the way in, cosine.
 const BACK: f64 = -0.99;
+
+/// Something is cut on a motion, as far as the program says.
+pub(super) fn is_cut(motion: &Motion) -> bool {
+    motion.kind != MotionKind::Rapid && !motion.fast && !motion.machine
+}
 
 /// How a motion begins and ends: unit vectors, zero where it does not move the tip; and its length, mm.
 #[derive(Clone, Copy, Debug)]

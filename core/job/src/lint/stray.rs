@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use post_readback::Motion;
 
-use super::depths::is_cut;
+use super::passes::is_cut;
 
 /// The ways to such a point and back are so many times as long as those beside them.
 const LONGER: f64 = 3.0;

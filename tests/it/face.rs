@@ -248,11 +248,72 @@ fn a_mode_whose_words_the_control_does_not_have_is_refused() {
         ("siemens", "G12.1", "TRANSMIT"),
         ("fanuc", "G999", "G12.1, G112"),
     ] {
-        let set = [format!("control.dialect={dialect}"), format!("mode.face.on={on}")];
+        let letter = "mode.face.letter=Y".to_owned();
+        let set = [format!("control.dialect={dialect}"), format!("mode.face.on={on}"), letter];
         let made = run(folder.path(), &cl, &set.each_ref().map(String::as_str));
         assert_eq!((made.code, made.out.as_str()), (1, ""), "{dialect} {on}");
         let message = format!("[mode.face] on = \"{on}\": dialect {dialect} knows no word of it");
         assert!(made.err.contains(&message) && made.err.contains(known), "{}", made.err);
     }
     assert_eq!(run(folder.path(), &cl, &["mode.face.on=G012.1"]).code, 0);
+}
+
+/// Behind other words than Fanuc's the coordinate has a letter of its own, which nobody guesses.
+#[test]
+fn the_letter_of_the_coordinate_is_said_behind_other_words_than_g12_1() {
+    let folder = tempfile::tempdir().unwrap();
+    let cl = milled(&SQUARE, 300.0);
+    for (dialect, on) in [("haas", "G112"), ("siemens", "TRANSMIT"), ("fanuc", "G112")] {
+        let set = [format!("control.dialect={dialect}"), format!("mode.face.on={on}")];
+        let made = run(folder.path(), &cl, &set.each_ref().map(String::as_str));
+        assert_eq!((made.code, made.out.as_str()), (1, ""), "{dialect} {on}");
+        let says = format!("which letter the coordinate across has behind {on} is not said");
+        assert!(made.err.contains(&says) && made.err.contains("letter = \"Y\""), "{}", made.err);
+    }
+}
+
+/// DIAMOF ahead of TRANSMIT makes other words of X than the machine file tells of, and TRANSMIT(2) is another machine.
+#[test]
+fn transmit_is_read_as_the_machine_file_describes_it_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = [
+        "control.dialect=siemens",
+        "mode.face.on=TRANSMIT",
+        "mode.face.off=TRAFOOF",
+        "mode.face.letter=Y",
+        "word.X.is=2 * X",
+    ];
+    let made = run(folder.path(), &milled(&SQUARE, 300.0), &set);
+    assert_eq!(made.code, 0, "{}", made.err);
+    let verify = |program: &str, set: &[&str]| {
+        let nc = folder.path().join("other.mpf");
+        fs::write(&nc, program).unwrap();
+        let part = folder.path().join("part.cls");
+        let [nc, part] = [&nc, &part].map(|path| path.to_str().unwrap());
+        let mut all = vec!["verify", nc, "-m", "lathe-xzc-polar", "--tool-length", "60"];
+        all.extend(["--against", part]);
+        set.iter().for_each(|set| all.extend(["--set", set]));
+        post(&all)
+    };
+    let told = |from: &str, to: &str| {
+        let text = made.out.replacen(from, to, 1);
+        assert_ne!(text, made.out, "{from}\n{}", made.out);
+        verify(&text, &set)
+    };
+    assert_eq!(told("TRANSMIT", "TRANSMIT(1)").code, 0);
+    let refused = |from: &str, to: &str, says: &str| {
+        let told = told(from, to);
+        assert_eq!(told.code, 1, "{from}: {}{}", told.out, told.err);
+        assert!(told.err.contains(says), "{says}\n{}", told.err);
+    };
+    refused("DIAMON", "DIAMOF", "diameters or radii of the words of X, against the machine file");
+    refused("TRANSMIT", "TRANSMIT(2)", "this is data set 2 of the control");
+    // The second data set is what a machine file of it describes, and the first is not.
+    let second = made.out.replace("TRANSMIT", "TRANSMIT(2)");
+    let mut of_second = set;
+    of_second[1] = "mode.face.on=TRANSMIT(2)";
+    let good = verify(&second, &of_second);
+    assert_eq!(good.code, 0, "{}{}", good.out, good.err);
+    let other = verify(&made.out, &of_second);
+    assert!(other.code == 1 && other.err.contains("this is data set 1"), "{}", other.err);
 }

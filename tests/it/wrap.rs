@@ -250,3 +250,24 @@ fn what_the_mode_cannot_is_refused() {
     let line = "mantle           G7.1 C38 to G7.1 C0: C is an angle of radius 38 mm";
     assert!(check.out.contains(line), "{}", check.out);
 }
+
+/// Haas reads the radius of the cylinder behind R; beside G107 the axis' own letter is none.
+#[test]
+fn haas_has_the_radius_of_the_cylinder_behind_r() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = |on: &'static str| ["control.dialect=haas", on, "mode.wrap.off=G107"];
+    let wrong = run(folder.path(), &groove(), &set("mode.wrap.on=G107 C{r}"));
+    assert_eq!((wrong.code, wrong.out.as_str()), (1, ""));
+    assert!(wrong.err.contains("dialect haas reads R beside G107"), "{}", wrong.err);
+    let made = run(folder.path(), &groove(), &set("mode.wrap.on=G107 R{r}"));
+    assert_eq!(made.code, 0, "{}", made.err);
+    let text = made.out.replacen("G107 R38", "G107 C38", 1);
+    assert_ne!(text, made.out, "{}", made.out);
+    let nc = folder.path().join("other.nc");
+    fs::write(&nc, text).unwrap();
+    let mut read = vec!["read", nc.to_str().unwrap(), "-m", "lathe-xzc-mantle"];
+    let set = set("mode.wrap.on=G107 R{r}");
+    set.iter().for_each(|set| read.extend(["--set", set]));
+    let told = post(&read);
+    assert!(told.code == 1 && told.err.contains("R does"), "{}{}", told.out, told.err);
+}

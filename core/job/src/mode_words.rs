@@ -33,34 +33,58 @@ pub(super) fn unknown(machine: &Machine, dialect: &mut OpenedDialect) -> Option<
     let mut modes = face.into_iter().chain(wrap).peekable();
     modes.peek()?;
     let words = dialect.vocabulary().unwrap_or_default();
-    let wrong = modes.find(|mode| !words.is_empty() && !mode.is_begun_by(&words))?;
-    let ModeBegin { key, on, meaning, what } = wrong;
-    let (name, on) = (&machine.control.dialect, on.join(" "));
-    let message =
-        format!("[{key}] on = \"{on}\": dialect {name} knows no word of it that begins {what}");
-    let known = words.iter().filter(|word| word.meaning == meaning).map(|word| word.word.as_ref());
-    let help = match known.collect::<Vec<_>>().join(", ") {
-        known if known.is_empty() => {
-            format!("{name} has none that is known here: leave [{key}] out")
-        }
-        known => format!("{name} has {known}"),
-    };
+    if words.is_empty() {
+        return None;
+    }
+    let name = &machine.control.dialect;
+    let (message, help) = modes.find_map(|mode| mode.wrong(name, &words))?;
     let place = machine.control.dialect_place.clone();
     Some(Diagnostic::error("machine-mode", message).help(help).at(place))
 }
 
 impl ModeBegin<'_> {
-    fn is_begun_by(&self, words: &[VocabularyWord]) -> bool {
+    /// What is wrong with its lines at the dialect of that name, and what would help.
+    fn wrong(&self, name: &str, words: &[VocabularyWord]) -> Option<(String, String)> {
+        let ModeBegin { key, on, meaning, what } = self;
+        let said = format!("[{key}] on = \"{}\"", on.join(" "));
+        let Some((line, code)) = self.begun_by(words) else {
+            let message = format!("{said}: dialect {name} knows no word of it that begins {what}");
+            let known = words.iter().filter(|word| word.meaning == *meaning);
+            let known = known.map(|word| word.word.as_ref()).collect::<Vec<_>>().join(", ");
+            let help = match known.is_empty() {
+                true => format!("{name} has none that is known here: leave [{key}] out"),
+                false => format!("{name} has {known}"),
+            };
+            return Some((message, help));
+        };
+        // A letter that the dialect has beside the code is what the control reads there.
+        let beside = |word: &VocabularyWord| {
+            let letter = word.word.strip_prefix(code.as_str())?.strip_prefix(' ')?.chars().next();
+            letter.filter(|_| word.meaning == *meaning)
+        };
+        let letter = words.iter().find_map(beside)?;
+        let has = tokens(&line).any(|token| token.starts_with(letter));
+        let message =
+            format!("{said}: dialect {name} reads {letter} beside {code}, and there is none");
+        (!has).then(|| (message, format!("on = \"{code} {letter}{{r}}\", {{r}} the radius")))
+    }
+
+    /// The line, in capitals, and the code of it that begins the mode.
+    fn begun_by(&self, words: &[VocabularyWord]) -> Option<(String, String)> {
         let begins = |token: &str| {
             let same = |word: &&VocabularyWord| word.word == token;
             words.iter().find(same).is_some_and(|word| word.meaning == self.meaning)
         };
-        self.on.iter().any(|line| {
-            let line = line.to_uppercase();
-            let mut tokens = line.split(|letter: char| !letter.is_alphanumeric() && letter != '.');
-            tokens.any(|token| begins(&without_zeros(token)))
+        self.on.iter().map(|line| line.to_uppercase()).find_map(|line| {
+            let code = tokens(&line).map(without_zeros).find(|token| begins(token))?;
+            Some((line, code))
         })
     }
+}
+
+/// The words of a line of the program.
+fn tokens(line: &str) -> impl Iterator<Item = &str> {
+    line.split(|letter: char| !letter.is_alphanumeric() && letter != '.')
 }
 
 /// A code without the zeros in front of its number: G07.1 is G7.1.

@@ -56,8 +56,8 @@ keys! {
         on: Spanned<OneOrMoreLines>,
         /// The line that ends it, or the lines: `"G13.1"`, `"TRAFOOF"`.
         off: Spanned<OneOrMoreLines>,
-        /// The letter of the coordinate across that of the linear axis: that of the turning axis if not said (C on Fanuc),
-        /// "Y" for TRANSMIT and on Haas and Okuma.
+        /// The letter of the coordinate across that of the linear axis: "Y" for TRANSMIT and on Haas and Okuma, that of the
+        /// turning axis on Fanuc (C), which need not say it behind G12.1.
         letter: Option<Spanned<String>> = Bounds::pattern("^[A-CU-Z]$"),
         /// The word of the linear axis is a radius in it, whatever `[word]` makes of it outside.
         radius: bool = Bounds::OFF,
@@ -95,6 +95,18 @@ struct FaceAxes {
     along: usize,
 }
 
+/// What says the letter.
+const LETTER: &str = "letter = \"Y\" (TRANSMIT; G112 of Haas, G137 of Okuma), or that of the turning axis, as after G12.1 of Fanuc";
+
+/// The lines begin the mode by Fanuc's G12.1, behind which the coordinate across has the letter of the turning axis.
+fn is_fanucs(on: &[String]) -> bool {
+    let mut tokens = on.iter().flat_map(|line| line.split_whitespace());
+    tokens.any(|token| {
+        let number = token.trim_start_matches(['G', 'g']);
+        number.len() < token.len() && number.trim_start_matches('0') == "12.1"
+    })
+}
+
 /// The chain that a control interpolates on a face.
 const CHAIN: &str = "[mode.face] is for a turning axis that carries the part, a linear axis along it and one that leads towards \
                      its line: chain = \"[w C' b Z X (S) t]\"";
@@ -111,7 +123,12 @@ impl Builder<'_> {
         let made = face_axes(machine).and_then(|axes| {
             let centre = centre(machine, axes)?;
             let own = &machine.axes[axes.turning].name;
-            let letter = said.letter.as_ref().map_or(own, |letter| letter.get_ref());
+            let letter = said.letter.as_ref().map(|letter| letter.get_ref());
+            let letter = letter.or_else(|| is_fanucs(&on).then_some(own)).ok_or_else(|| {
+                let message =
+                    format!("which letter the coordinate across has behind {}", on.join(" "));
+                Lack(format!("{message} is not said"), LETTER)
+            })?;
             check_letter(machine, [axes.across, axes.along].into_iter(), letter)?;
             let mode = FaceMode {
                 on,

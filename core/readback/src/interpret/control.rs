@@ -38,6 +38,13 @@ const NOTES: usize = 100;
 /// Unknown words that are counted apart.
 const UNKNOWN: usize = 1000;
 
+/// How much of its axis a word of one axis alone is, by place, as the machine file has it. Those of several axes are made by
+/// the whole map.
+fn described_scale(machine: &Machine) -> [f64; MAX_AXES] {
+    let Some(map) = &machine.word_map else { return [1.0; MAX_AXES] };
+    std::array::from_fn(|place| if map.is_coupled(place) { 1.0 } else { 1.0 / map.factor(place) })
+}
+
 impl AxisLetters {
     fn new(machine: &Machine) -> Self {
         let mut axes = Self {
@@ -50,10 +57,7 @@ impl AxisLetters {
             coupled: None,
         };
         if let Some(map) = &machine.word_map {
-            for (place, scale) in axes.scale.iter_mut().enumerate() {
-                // Those of several axes are made by the whole map.
-                *scale = if map.is_coupled(place) { 1.0 } else { 1.0 / map.factor(place) };
-            }
+            axes.scale = described_scale(machine);
             axes.coupled = Some(map).filter(|map| map.couples()).cloned().map(Arc::new);
         }
         for (place, axis) in machine.axes.iter().enumerate() {
@@ -407,6 +411,11 @@ impl ControlState {
             }
         }
         CoordinateFrame::new(axes, origin)
+    }
+
+    /// Words are worth what the machine file says: none of the program has made diameters or radii of them.
+    pub(super) fn counts_as_described(&self) -> bool {
+        self.axes.scale == described_scale(&self.machine)
     }
 }
 

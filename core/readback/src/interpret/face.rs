@@ -50,14 +50,16 @@ impl FaceWords {
 }
 
 impl ControlState {
-    /// The control interpolates in polar coordinates from here on.
-    pub(super) fn begin_face(&mut self) -> Result<(), Box<Diagnostic>> {
+    /// The control interpolates in polar coordinates from here on, by its data set of that number.
+    pub(super) fn begin_face(&mut self, data_set: f64) -> Result<(), Box<Diagnostic>> {
         let Some(words) = self.face_words.clone() else {
             let word = "the control interpolates in polar coordinates from here on";
             return Err(self.unknown_mode(word, "mode.face"));
         };
         let mode = words.mode;
-        let lack = self.holds_off_modes().or_else(|| self.stands_apart(&mode));
+        let lack = self.holds_off_modes();
+        let lack = lack.or_else(|| self.other_data_set(data_set, &mode.on));
+        let lack = lack.or_else(|| self.stands_apart(&mode));
         if let Some(lack) = lack {
             let message = format!("polar interpolation begins, and {lack}");
             return Err(self.refuse("nc-mode", message));

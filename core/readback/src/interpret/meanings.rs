@@ -21,13 +21,13 @@ impl ControlState {
         match meaning {
             Meaning::FaceTransformation => {
                 self.face_zero(words)?;
-                return self.begin_face();
+                return self.begin_face(1.0);
             }
             Meaning::FaceTransformationOff => return self.end_face(),
             Meaning::CylinderTransformation => {
                 return match code {
                     Some(code) => self.wrap_code(code, words),
-                    None => self.begin_wrap(None, "its word"),
+                    None => self.begin_wrap(None, 1.0, "its word"),
                 };
             }
             // One word ends all transformations of some controls.

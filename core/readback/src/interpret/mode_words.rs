@@ -31,6 +31,17 @@ impl AxisLetters {
     }
 }
 
+/// The number of the data set in a line that begins a transformation, if it has one: the last of what stands between the
+/// parentheses, alone (TRANSMIT) or behind the diameter (TRACYL).
+fn data_set(line: &str) -> Option<f64> {
+    let (name, behind) = line.split_once('(')?;
+    let inside = behind.split_once(')')?.0;
+    let mut values = inside.split(',').map(str::trim);
+    let alone = name.trim().eq_ignore_ascii_case("TRANSMIT");
+    let value = if alone { values.next() } else { values.nth(1) };
+    value?.parse().ok()
+}
+
 impl ControlState {
     /// Why no mode can begin here.
     pub(super) fn holds_off_modes(&self) -> Option<String> {
@@ -40,10 +51,21 @@ impl ControlState {
             "a plane, tool centre point control or a turned frame is in force"
         } else if self.state.compensation != 0 || self.cycles.in_force() {
             "cutter compensation or a cycle is in force"
+        } else if !self.counts_as_described() {
+            "a word has made diameters or radii of the words of X, against the machine file: what they are in the mode is not told"
         } else {
             return None;
         };
         Some(lack.to_owned())
+    }
+
+    /// Why the data set of that number is not the one of `on`, the lines that begin the mode in the machine file: `TRANSMIT(2)`,
+    /// `TRACYL(50, 2)`, the first without a number.
+    pub(super) fn other_data_set(&self, number: f64, on: &[String]) -> Option<String> {
+        let known = on.iter().find_map(|line| data_set(line)).unwrap_or(1.0);
+        (number != known).then(|| {
+            format!("this is data set {number} of the control, and the machine file tells of data set {known} alone")
+        })
     }
 
     /// `word` begins a mode that the machine file says nothing of; its table is `key`.

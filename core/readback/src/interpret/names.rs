@@ -337,6 +337,17 @@ impl ControlState {
         }
     }
 
+    /// The value of the argument at a place of a call, if something stands there.
+    fn argument(
+        &self,
+        arguments: &[Option<NcValue>],
+        place: usize,
+    ) -> Result<Option<f64>, Box<Diagnostic>> {
+        let Some(Some(value)) = arguments.get(place) else { return Ok(None) };
+        let worth = self.variables.worth(value);
+        worth.map(Some).map_err(|finding| self.placed(*finding).boxed())
+    }
+
     /// A call with parentheses.
     fn call(
         &mut self,
@@ -360,15 +371,14 @@ impl ControlState {
             }
             (_, WordMeaning::Means(Meaning::TiltedPlaneOff)) => return planes::end(self),
             (_, WordMeaning::Means(Meaning::CylinderTransformation)) => {
-                let diameter = match arguments.first() {
-                    Some(Some(value)) => {
-                        let worth = self.variables.worth(value);
-                        Some(worth.map_err(|finding| self.placed(*finding).boxed())?)
-                    }
-                    _ => None,
-                };
+                let diameter = self.argument(arguments, 0)?;
                 let radius = diameter.map(|diameter| diameter * self.modal.unit / 2.0);
-                return self.begin_wrap(radius, name);
+                let data_set = self.argument(arguments, 1)?.unwrap_or(1.0);
+                return self.begin_wrap(radius, data_set, name);
+            }
+            (_, WordMeaning::Means(Meaning::FaceTransformation)) => {
+                let data_set = self.argument(arguments, 0)?.unwrap_or(1.0);
+                return self.begin_face(data_set);
             }
             (_, WordMeaning::Means(Meaning::SmoothingOff))
                 if self.lexicon.language() == Language::Names =>

@@ -48,22 +48,36 @@ impl ControlState {
     ) -> Result<(), Box<Diagnostic>> {
         let own = self.wrap_words.as_ref().map(|words| words.mode.turning);
         let letter = own.and_then(|place| self.machine.axes[place].name.bytes().next());
+        // Where the dialect has a letter for the radius, that of the axis is something else beside the code.
+        let of_radius = self.lexicon.value_letter(code);
+        let letters = if of_radius.is_some() { [None, of_radius] } else { [letter, Some(b'R')] };
+        if let (Some(own), Some(right)) = (letter, of_radius)
+            && words.present & bit(own) != 0
+        {
+            let [own, right] = [own, right].map(char::from);
+            let message = format!(
+                "{own} beside {code} does not say the radius of the cylinder on this control, and what it does there is not followed: {right} does"
+            );
+            return Err(self.refuse("nc-word", message));
+        }
         let mut radius = None;
-        for letter in letter.into_iter().chain([b'R']) {
+        for letter in letters.into_iter().flatten() {
             radius = words.take(letter).or(radius);
             words.present &= !bit(letter);
         }
         let radius = radius.map(|radius| radius * self.modal.unit);
         match radius.filter(|radius| *radius != 0.0) {
             None if self.wrap_words.is_some() => self.end_wrap(),
-            radius => self.begin_wrap(radius, &code.to_string()),
+            radius => self.begin_wrap(radius, 1.0, &code.to_string()),
         }
     }
 
-    /// The control interpolates on a cylinder from here on, whose radius (mm) `word` says, if it does.
+    /// The control interpolates on a cylinder from here on, whose radius (mm) `word` says, if it does, by its data set of that
+    /// number.
     pub(super) fn begin_wrap(
         &mut self,
         radius: Option<f64>,
+        data_set: f64,
         word: &str,
     ) -> Result<(), Box<Diagnostic>> {
         let Some(words) = self.wrap_words.clone() else {
@@ -74,6 +88,8 @@ impl ControlState {
         let axis = &self.machine.axes[mode.turning];
         let turned = shorter(self.at.joints[mode.turning] - self.zero[mode.turning], 0.0);
         let lack = if let Some(lack) = self.holds_off_modes() {
+            Some(lack)
+        } else if let Some(lack) = self.other_data_set(data_set, &mode.on) {
             Some(lack)
         } else if let Some(radius) = radius.filter(|radius| (radius - mode.radius).abs() > SAME) {
             let [said, known] = [radius, mode.radius].map(Short);

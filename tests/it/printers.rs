@@ -392,6 +392,25 @@ fn what_a_firmware_makes_otherwise_of_a_line_is_told() {
 }
 
 /// G0 goes at F: another is another travel, and none is that of the beads.
+/// What E counts, and from where, holds from the print before unless a program says it.
+#[test]
+fn what_the_extruder_counts_from_is_told_where_a_program_does_not_say_it() {
+    for firmware in &FIRMWARE {
+        let name = firmware.name;
+        let program = posted(name);
+        for (line, says) in [
+            ("M82", "does not set positions of the extruder (M82)"),
+            ("G92 E0", "does not set where the extruder counts from (G92 E0)"),
+        ] {
+            let other = program.replacen(&format!("{line}\n"), "", 1);
+            assert_ne!(other, program);
+            let done = judged(name, "verify", &other);
+            assert!(done.err.contains(says), "{name}: {}", done.err);
+            assert!(!judged(name, "verify", &program).err.contains(says), "{name}");
+        }
+    }
+}
+
 #[test]
 fn a_rapid_at_another_feed_is_told() {
     for firmware in &FIRMWARE {

@@ -425,6 +425,15 @@ fn tool_and_frame_of_straight_moves_are_those_of_the_machine_file() {
             }
         }
         if dialect == "rapid" {
+            // Watched, as after each start, the arm stops where a pose says another configuration.
+            let free = "ConfL \\Off;";
+            let unset = verify(&program.replacen(free, "", 1));
+            let says =
+                "the program does not set any configuration for straight moves (ConfL \\Off)";
+            assert!(unset.code == 1 && unset.err.contains(says), "{}", unset.err);
+            let watched = verify(&program.replacen(free, "ConfL \\On;", 1));
+            let says = "CONFL is not run";
+            assert!(watched.code == 1 && watched.err.contains(says), "{}", watched.err);
             // A quaternion of twice the length.
             let list = behind.split(['[', ']']).nth(4).unwrap();
             let parts = list.split(',').map(|part| 2.0 * part.parse::<f64>().unwrap());

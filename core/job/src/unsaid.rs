@@ -119,7 +119,10 @@ impl Unsaid<'_> {
             let words = self.spoken.words.iter();
             let words = words.filter(|word| ModalGroup::of(word.meaning) == Some(group));
             let words: Vec<&str> = words.map(|word| word.word.as_ref()).collect();
-            format!("{} ({})", group.name(), words.join(", "))
+            match words.is_empty() {
+                true => group.name().to_owned(),
+                false => format!("{} ({})", group.name(), words.join(", ")),
+            }
         };
         let is_told = |group: ModalGroup| match group {
             ModalGroup::Compensation | ModalGroup::Cycle => self.own,

@@ -185,6 +185,8 @@
 #define POST_MEANING_TOOL_AND_FRAME 213u
 #define POST_MEANING_OWN_AXIS_WORDS 214u
 #define POST_MEANING_NO_AXIS_WORDS 215u
+#define POST_MEANING_EXTRUDER_POSITIONS 216u
+#define POST_MEANING_ANY_CONFIGURATION 217u
 POST_ASSERT(sizeof(PostText) == 16 && POST_ALIGN(PostText) == 8, "PostText");
 POST_ASSERT(offsetof(PostText, ptr) == 0, "PostText.ptr");
 POST_ASSERT(offsetof(PostText, len) == 8, "PostText.len");

@@ -439,5 +439,9 @@ codes! {
         OwnAxisWords = 214 "OWN_AXIS_WORDS",
         /// The word stands in a block without words of axes: G23. It stands behind what the word means otherwise.
         NoAxisWords = 215 "NO_AXIS_WORDS",
+        /// Words of the extruder are positions, not ways: M82 of printers.
+        ExtruderPositions = 216 "EXTRUDER_POSITIONS",
+        /// An arm goes straight in whatever configuration the way asks for: ConfL \\Off.
+        AnyConfiguration = 217 "ANY_CONFIGURATION",
     }
 }

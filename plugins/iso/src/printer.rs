@@ -184,7 +184,7 @@ const PRINTER_WORDS: &[(&str, Meaning)] = &[
     ("M30", Meaning::NotFollowed),
     ("M32", Meaning::NotFollowed),
     ("M73", Meaning::Nothing),
-    ("M82", Meaning::Nothing),
+    ("M82", Meaning::ExtruderPositions),
     ("M83", Meaning::NotFollowed),
     ("M18", Meaning::Nothing),
     ("M84", Meaning::Nothing),

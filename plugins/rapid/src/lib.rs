@@ -75,7 +75,9 @@ const WORDS: &[(&str, Meaning)] = &[
     ("MoveC", Meaning::PoseMove),
     ("CJointT", Meaning::JointsNow),
     ("ConfJ", Meaning::Nothing),
-    ("ConfL", Meaning::Nothing),
+    // Watched, as after each start, the arm stops where it has another configuration than the pose says.
+    ("ConfL", Meaning::NotFollowed),
+    ("ConfL \\Off", Meaning::AnyConfiguration),
     ("TPWrite", Meaning::Nothing),
     ("WaitTime", Meaning::Dwell),
     ("wobj0", Meaning::WorkOffsetOff),

@@ -5,6 +5,7 @@ use post_machine::diagnostic::Diagnostic;
 
 use super::block_words::{BlockWords, bit};
 use super::feed::tip_length;
+use super::relied::ModalGroup;
 use super::state::ControlState;
 use crate::{BlockEffect, MotionKind};
 
@@ -63,6 +64,9 @@ impl ControlState {
         let letter = self.machine.along.as_ref().and_then(|word| word.name.bytes().next());
         let said = letter.and_then(|letter| words.take(letter));
         self.along.at = said.or(self.along.at);
+        if said.is_some() {
+            self.modal.unset &= !ModalGroup::ExtruderStart.bit();
+        }
         said.is_some()
     }
 
@@ -78,6 +82,10 @@ impl ControlState {
         words.used |= bit(letter);
         let stood = self.along.at;
         self.along.at = said.or(stood);
+        if said.is_some() {
+            self.relies_on(ModalGroup::Extruder);
+            self.relies_on(ModalGroup::ExtruderStart);
+        }
         let before = before.min(self.done.len());
         let (mut way, mut longer) = (0.0, 0.0);
         for effect in &self.done[before..] {

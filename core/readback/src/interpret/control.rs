@@ -426,9 +426,11 @@ impl ModalState {
         let turns = machine.spindle.surface_speed
             || (0..machine.axes.len()).any(|place| is_diameter(machine, place));
         let diameters = if turns { 0 } else { ModalGroup::Diameter.bit() };
+        let extrudes = machine.along.as_ref().is_some_and(|word| word.name == "E");
+        let extruder = if extrudes { 0 } else { ModalGroup::EXTRUDER };
         Self {
             motion: if named { MotionMode::Linear } else { MotionMode::None },
-            unset: lexicon.modes() & !diameters,
+            unset: lexicon.modes() & !(diameters | extruder),
             plane: ArcPlane::Xy,
             incremental: false,
             centres_absolute: false,

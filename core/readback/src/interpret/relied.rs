@@ -29,6 +29,12 @@ pub enum ModalGroup {
     ToolFrame,
     /// What the poses of a robot count from.
     BaseFrame,
+    /// Positions or ways: what the words of an extruder are.
+    Extruder,
+    /// Where the extruder stands as its first word comes.
+    ExtruderStart,
+    /// Whether an arm may come straight to a pose in another configuration than it says.
+    Configuration,
 }
 
 /// A mode that stands otherwise where a motion depends on it than the machine file has it.
@@ -52,6 +58,9 @@ const LEFT_ON: u16 =
     ModalGroup::Compensation.bit() | ModalGroup::Cycle.bit() | ModalGroup::TiltedPlane.bit();
 
 impl ModalGroup {
+    /// The bits of an extruder's modes.
+    pub(super) const EXTRUDER: u16 = Self::Extruder.bit() | Self::ExtruderStart.bit();
+
     /// The mode that a word with this meaning sets, if it sets one.
     pub fn of(meaning: Meaning) -> Option<Self> {
         Some(match meaning {
@@ -77,6 +86,8 @@ impl ModalGroup {
             }
             Meaning::ToolFrame | Meaning::OwnToolFrame => Self::ToolFrame,
             Meaning::WorkOffset | Meaning::WorkOffsetOff => Self::BaseFrame,
+            Meaning::ExtruderPositions => Self::Extruder,
+            Meaning::AnyConfiguration => Self::Configuration,
             _ => return None,
         })
     }
@@ -94,6 +105,9 @@ impl ModalGroup {
             Self::Diameter => "diameters or radii",
             Self::ToolFrame => "the frame of the tool",
             Self::BaseFrame => "the frame of poses",
+            Self::Extruder => "positions of the extruder",
+            Self::ExtruderStart => "where the extruder counts from (G92 E0)",
+            Self::Configuration => "any configuration for straight moves",
         }
     }
 
@@ -102,22 +116,31 @@ impl ModalGroup {
         1 << self as u8
     }
 
-    /// The bits of the frames that a robot's program must set itself: those that it has a word for, and another of what
-    /// they must be.
+    /// The bits of what a robot's program must set itself: the frames that it has a word for, and another of what they must
+    /// be, and whether configurations are watched.
     pub(crate) fn of_robots(words: &[VocabularyWord]) -> u16 {
         let has = |meaning| words.iter().any(|word| word.meaning == meaning);
         let [tool, base] = [
             has(Meaning::ToolFrame) && has(Meaning::OwnToolFrame),
             has(Meaning::WorkOffset) && has(Meaning::WorkOffsetOff),
         ];
-        let bits = [(tool, Self::ToolFrame), (base, Self::BaseFrame)].into_iter();
+        let configuration = has(Meaning::AnyConfiguration);
+        let bits = [
+            (tool, Self::ToolFrame),
+            (base, Self::BaseFrame),
+            (configuration, Self::Configuration),
+        ]
+        .into_iter();
         bits.filter(|(is, _)| *is).fold(0, |bits, (_, group)| bits | group.bit())
     }
 
     /// The bits of the modes that a dialect has words for: what its control has fixed, no program can set.
     pub(crate) fn named(words: &[VocabularyWord]) -> u16 {
         let groups = words.iter().filter_map(|word| Self::of(word.meaning));
-        groups.fold(0, |bits, group| bits | group.bit())
+        groups.fold(0, |bits, group| match group {
+            Self::Extruder => bits | Self::EXTRUDER,
+            _ => bits | group.bit(),
+        })
     }
 }
 

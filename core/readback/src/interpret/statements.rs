@@ -96,7 +96,16 @@ fn statement(control: &mut ControlState, terms: &[NcTerm]) -> Answer<()> {
     if let Some((left, right)) = assignment(terms) {
         return assign(control, left, right);
     }
-    let sense = control.lexicon.name(name);
+    let with_switch = match terms {
+        [_, NcTerm::Sign(b'\\'), NcTerm::Name(switch), ..] => {
+            control.lexicon.name(&format!("{name} \\{switch}"))
+        }
+        _ => WordMeaning::Unknown,
+    };
+    let sense = match with_switch {
+        WordMeaning::Unknown => control.lexicon.name(name),
+        known => known,
+    };
     let WordMeaning::Means(meaning) = sense else {
         let message = format!("{name} is no statement that is known here, and might move the arm");
         return Err(control.refuse("nc-statement", message));
@@ -112,6 +121,7 @@ fn obey(control: &mut ControlState, name: &str, meaning: Meaning, terms: &[NcTer
     };
     match meaning {
         Meaning::Nothing => {}
+        Meaning::AnyConfiguration => control.sets_group(meaning),
         Meaning::ToolFrame => control.set_robot_frame(ModalGroup::ToolFrame, terms),
         Meaning::ToolAndFrame => return control.set_robot_frames(terms),
         Meaning::JointMove => return joint_move(control, name, terms),
@@ -422,6 +432,7 @@ fn straight_move(control: &mut ControlState, name: &str, terms: &[NcTerm]) -> An
     let Some(PoseTarget { pose, beside }) = target else {
         return Err(not_read(control));
     };
+    control.relies_on(ModalGroup::Configuration);
     if let [NcTerm::Group(b'[', inside), ..] = first {
         let length = quaternion_length(inside);
         if length.is_some_and(|length| libm::fabs(length - 1.0) > NORMAL) {

@@ -251,23 +251,39 @@ fn what_the_mode_cannot_is_refused() {
     assert!(check.out.contains(line), "{}", check.out);
 }
 
-/// Haas reads the radius of the cylinder behind R; beside G107 the axis' own letter is none.
+/// Haas lays the words of a linear axis along the cylinder: beside G107 stand its letter, that of the axis that turns, and the
+/// radius behind R or the diameter behind Q.
 #[test]
-fn haas_has_the_radius_of_the_cylinder_behind_r() {
+fn haas_lays_the_words_of_a_linear_axis_along_the_cylinder() {
     let folder = tempfile::tempdir().unwrap();
-    let set = |on: &'static str| ["control.dialect=haas", on, "mode.wrap.off=G107"];
+    let set = |on: &'static str| {
+        let more = ["mode.wrap.off=G107", "mode.wrap.letter=Y", "mode.wrap.lengths=true"];
+        [&["control.dialect=haas", on], &more[..]].concat()
+    };
     let wrong = run(folder.path(), &groove(), &set("mode.wrap.on=G107 C{r}"));
     assert_eq!((wrong.code, wrong.out.as_str()), (1, ""));
-    assert!(wrong.err.contains("dialect haas reads R beside G107"), "{}", wrong.err);
-    let made = run(folder.path(), &groove(), &set("mode.wrap.on=G107 R{r}"));
+    assert!(wrong.err.contains("dialect haas reads R or Q beside G107"), "{}", wrong.err);
+    let made = run(folder.path(), &groove(), &set("mode.wrap.on=G107 Y0 C0 R{r}"));
     assert_eq!(made.code, 0, "{}", made.err);
-    let text = made.out.replacen("G107 R38", "G107 C38", 1);
-    assert_ne!(text, made.out, "{}", made.out);
-    let nc = folder.path().join("other.nc");
-    fs::write(&nc, text).unwrap();
-    let mut read = vec!["read", nc.to_str().unwrap(), "-m", "lathe-xzc-mantle"];
-    let set = set("mode.wrap.on=G107 R{r}");
-    set.iter().for_each(|set| read.extend(["--set", set]));
-    let told = post(&read);
-    assert!(told.code == 1 && told.err.contains("R does"), "{}{}", told.out, told.err);
+    let by_diameter = run(folder.path(), &groove(), &set("mode.wrap.on=G107 Y0 C0 Q{d}"));
+    assert_eq!(by_diameter.code, 0, "{}", by_diameter.err);
+    assert_eq!(by_diameter.out.replace("Q76", "R38"), made.out);
+    let set = set("mode.wrap.on=G107 Y0 C0 R{r}");
+    for (line, says) in [
+        ("G107 Y0 C0 R39", "its radius is 39 mm"),
+        ("G107 Y0 C0 Q38", "its radius is 19 mm"),
+        ("G107 Y0 C0", "not its radius"),
+        ("G107 Y0 R38", "not which axis turns it"),
+        ("G107 Z0 C0 R38", "lengths of Z along the cylinder"),
+        ("G107 C0 R38", "begins no mode"),
+    ] {
+        let text = made.out.replacen("G107 Y0 C0 R38", line, 1);
+        assert_ne!(text, made.out, "{line}");
+        let nc = folder.path().join("other.nc");
+        fs::write(&nc, text).unwrap();
+        let mut read = vec!["read", nc.to_str().unwrap(), "-m", "lathe-xzc-mantle"];
+        set.iter().for_each(|set| read.extend(["--set", *set]));
+        let told = post(&read);
+        assert!(told.code == 1 && told.err.contains(says), "{line}: {}{}", told.out, told.err);
+    }
 }

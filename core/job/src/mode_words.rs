@@ -57,16 +57,23 @@ impl ModeBegin<'_> {
             };
             return Some((message, help));
         };
-        // A letter that the dialect has beside the code is what the control reads there.
+        // A letter that the dialect has beside the code is what the control reads there: the radius, and more with it.
         let beside = |word: &VocabularyWord| {
             let letter = word.word.strip_prefix(code.as_str())?.strip_prefix(' ')?.chars().next();
             letter.filter(|_| word.meaning == *meaning)
         };
-        let letter = words.iter().find_map(beside)?;
-        let has = tokens(&line).any(|token| token.starts_with(letter));
+        let letters: Vec<char> = words.iter().filter_map(beside).collect();
+        let has = |letter: &char| tokens(&line).any(|token| token.starts_with(*letter));
+        if letters.is_empty() || letters.iter().any(has) {
+            return None;
+        }
+        let listed = letters.iter().map(char::to_string).collect::<Vec<_>>().join(" or ");
         let message =
-            format!("{said}: dialect {name} reads {letter} beside {code}, and there is none");
-        (!has).then(|| (message, format!("on = \"{code} {letter}{{r}}\", {{r}} the radius")))
+            format!("{said}: dialect {name} reads {listed} beside {code}, and there is none");
+        let help = format!(
+            "on = \"{code} Y0 C0 R{{r}}\": the letter whose words are laid along the cylinder (letter = \"Y\", lengths = true), that of the turning axis, the radius"
+        );
+        Some((message, help))
     }
 
     /// The line, in capitals, and the code of it that begins the mode.

@@ -88,6 +88,7 @@ const OWN: &[(&str, Meaning)] = &[
     ("G100", Meaning::OwnAxisWords),
     ("G107", Meaning::CylinderTransformation),
     ("G107 R", Meaning::CylinderTransformation),
+    ("G107 Q", Meaning::CylinderTransformation),
     ("G112", Meaning::FaceTransformation),
     ("G113", Meaning::FaceTransformationOff),
     ("G12", Meaning::CycleOther),

@@ -208,6 +208,27 @@ fn a_head_that_swings_goes_through_the_centre() {
     }
 }
 
+/// A control that turns C the shorter way is led through points of the turn on the spot: half a turn has no shorter way.
+#[test]
+fn half_a_turn_in_the_centre_has_points_where_c_goes_the_shorter_way() {
+    let face = "extends = \"lathe-xzc-face\"\n[axis.C]\nrange = [0, 360]\n";
+    let mut text = cl();
+    let up = V::z();
+    // From the far end of one side to that of the other, beginning on the line of C, and ending there.
+    for [from, to] in [[30.0, -30.0], [0.0, -30.0], [-30.0, 0.0], [25.0, -40.0]] {
+        text = text.rapid(V::new(from, 0.0, 20.0), up).cut(V::new(from, 0.0, -2.0), up);
+        text = text.cut(V::new(to, 0.0, -2.0), up).rapid(V::new(to, 0.0, 20.0), up);
+    }
+    let made = run(face, &text.end(), "60");
+    assert_eq!(made.code, 0, "{}", made.err);
+    let all = blocks(&made.out, &["C", "Z", "X"], &[]);
+    let cuts = all.windows(2).filter(|pair| !pair[1].rapid);
+    let turns = cuts.map(|pair| pair[1].words[0] - pair[0].words[0]);
+    let longest = turns.map(|turn| ((turn + 540.0).rem_euclid(360.0) - 180.0).abs());
+    assert!(longest.fold(0.0, f64::max) < 179.0, "{}", made.out);
+    assert!(made.out.contains("C90.") || made.out.contains("C270."), "{}", made.out);
+}
+
 /// A tool that leans on the centre line cannot have C turned there: where X ends, the cut is refused.
 #[test]
 fn no_tool_that_leans_is_turned_on_the_centre_line() {

@@ -5,12 +5,13 @@
 //! middle is taken in the axes' own space, rotary values halfway and the tip put on its chord, as long as the tool
 //! axis stays within tolerance.
 
+use post_machine::kinematics::Joints;
 use post_plugin::ModelSession;
 
 use super::bound::DeviationBound;
 use super::deviation::{NodeMove, between};
 use super::linearise::{LineariseError, Lineariser};
-use super::node::{PathNode, PlacementError};
+use super::node::{LONGEST, PathNode, PlacementError};
 
 /// The shortest piece, as a share of its move.
 const SHORTEST: f64 = 1.0 / (1u64 << 22) as f64;
@@ -160,11 +161,17 @@ fn on_the_spot(piece: &NodeMove<'_>) -> Option<Result<Vec<PathNode>, PlacementEr
     }
     let t = from.t * (1.0 - meeting.share) + to.t * meeting.share;
     let target = piece.target(meeting.share);
-    let ends = [(meeting.share > 0.0, first), (meeting.share < 1.0, last)];
-    let ends = ends.into_iter().filter(|(inside, _)| *inside);
-    let turned = |joints| placer.solver().turned_on_the_spot(&target, joints);
-    let nodes: Result<Vec<PathNode>, _> =
-        ends.map(|(_, joints)| placer.settled(target, t, &turned(joints))).collect();
+    // A control that goes the shorter way is led through points of the turn.
+    let steps = if placer.turns_too_far(first, last) { libm::ceil(turn / LONGEST) } else { 1.0 };
+    let shares = std::iter::successors(Some(0.0), |step| Some(step + 1.0));
+    let shares = shares.take_while(|step| *step <= steps).map(|step| step / steps);
+    let inside = shares.filter(|share| {
+        (*share > 0.0 || meeting.share > 0.0) && (*share < 1.0 || meeting.share < 1.0)
+    });
+    let turned = |joints: Joints| placer.solver().turned_on_the_spot(&target, &joints);
+    let nodes: Result<Vec<PathNode>, _> = inside
+        .map(|share| placer.settled(target, t, &turned(between(first, last, share))))
+        .collect();
     // A tool that leans there does not stay where it is.
     let leans = |node: &PathNode| node.axis_error >= piece.tolerances.axis;
     (!nodes.as_ref().is_ok_and(|nodes| nodes.iter().any(leans))).then_some(nodes)

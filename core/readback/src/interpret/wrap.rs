@@ -48,20 +48,11 @@ impl ControlState {
     ) -> Result<(), Box<Diagnostic>> {
         let own = self.wrap_words.as_ref().map(|words| words.mode.turning);
         let letter = own.and_then(|place| self.machine.axes[place].name.bytes().next());
-        // Where the dialect has a letter for the radius, that of the axis is something else beside the code.
-        let of_radius = self.lexicon.value_letter(code);
-        let letters = if of_radius.is_some() { [None, of_radius] } else { [letter, Some(b'R')] };
-        if let (Some(own), Some(right)) = (letter, of_radius)
-            && words.present & bit(own) != 0
-        {
-            let [own, right] = [own, right].map(char::from);
-            let message = format!(
-                "{own} beside {code} does not say the radius of the cylinder on this control, and what it does there is not followed: {right} does"
-            );
-            return Err(self.refuse("nc-word", message));
+        if self.lexicon.value_letter(code).is_some() {
+            return self.map_on_cylinder(code, letter, words);
         }
         let mut radius = None;
-        for letter in letters.into_iter().flatten() {
+        for letter in letter.into_iter().chain([b'R']) {
             radius = words.take(letter).or(radius);
             words.present &= !bit(letter);
         }
@@ -70,6 +61,56 @@ impl ControlState {
             None if self.wrap_words.is_some() => self.end_wrap(),
             radius => self.begin_wrap(radius, 1.0, &code.to_string()),
         }
+    }
+
+    /// G107 of Haas: the letter of a linear axis, whose words are laid along the cylinder, that of the turning axis, and R, the
+    /// radius, or Q, the diameter; alone it ends the mode (Haas Automation, G107 cylindrical mapping).
+    fn map_on_cylinder(
+        &mut self,
+        code: GCode,
+        turning: Option<u8>,
+        words: &mut BlockWords,
+    ) -> Result<(), Box<Diagnostic>> {
+        let mut take = |letter: u8| {
+            let value = words.take(letter);
+            words.present &= !bit(letter);
+            value
+        };
+        let mapped = [b'X', b'Y', b'Z'].into_iter().find(|letter| take(*letter).is_some());
+        let turning = turning.and_then(&mut take).is_some();
+        let radius = take(b'R').or(take(b'Q').map(|diameter| diameter / 2.0));
+        let Some(mapped) = mapped.map(char::from) else {
+            return match (turning, radius) {
+                (false, None) => self.end_wrap(),
+                _ => {
+                    let message = format!(
+                        "{code} without the letter of a linear axis begins no mode, and the diameter that it sets is not followed"
+                    );
+                    Err(self.refuse("nc-mode", message))
+                }
+            };
+        };
+        let lack = match &self.wrap_words {
+            Some(WrapWords { mode, .. }) if mode.letter != mapped.to_string() || !mode.lengths => {
+                format!(
+                    "lengths of {mapped} along the cylinder, and [mode.wrap] has {} of {}",
+                    if mode.lengths { "lengths" } else { "angles" },
+                    mode.letter
+                )
+            }
+            _ if !turning => "a cylinder, and not which axis turns it".to_owned(),
+            _ if radius.is_none() => {
+                "a cylinder, and not its radius: that of the last is taken".to_owned()
+            }
+            _ => {
+                return self.begin_wrap(
+                    radius.map(|radius| radius * self.modal.unit),
+                    1.0,
+                    &code.to_string(),
+                );
+            }
+        };
+        Err(self.refuse("nc-mode", format!("{code} tells of {lack}")))
     }
 
     /// The control interpolates on a cylinder from here on, whose radius (mm) `word` says, if it does, by its data set of that

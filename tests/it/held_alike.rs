@@ -1,5 +1,6 @@
 //! What `post` writes silently `post verify` finds right, and what that would refuse is not written.
 
+use std::fmt::Write as _;
 use std::fs;
 
 use crate::common::{Run, command, run};
@@ -180,6 +181,48 @@ fn a_turn_that_no_vector_says_is_refused() {
         let refused = sample(machine, "tests/it/wrong_programs/heads.cls").posted().unwrap_err();
         assert!(refused.contains("error[jump]"), "{machine}: {refused}");
         assert!(refused.contains("heads.cls:43"), "{machine}: {refused}");
+    }
+}
+
+/// Through a pole and on on its other side a table that tilts one way alone turns round: no vector says it on the pole, and
+/// beside it the vectors lead it round. One that tilts both ways goes on.
+#[test]
+fn a_table_is_led_round_a_pole_by_vectors_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("pole.cls");
+    let with = [
+        "--tool-length",
+        "100",
+        "--set",
+        "control.tcp=control",
+        "--set",
+        "control.orientation=vector",
+        "--set",
+        "control.dialect=siemens",
+    ];
+    for (machine, beside, posted) in
+        [("dmu50", 0.0, false), ("dmu50", 0.5, true), ("head-head", 0.0, true)]
+    {
+        let mut text = "LOAD/TOOL,1\nSPINDL/RPM,6000,CLW\nFEDRAT/500,MMPM\nMULTAX/ON\nRAPID\n\
+            GOTO/-30,0,60,-0.4472136,0,0.8944272\n"
+            .to_owned();
+        for step in -10..=10 {
+            let x = 3.0 * f64::from(step);
+            let length = libm::sqrt(x * x + beside * beside + 3600.0);
+            let [i, j, k] = [x, beside, 60.0].map(|part| part / length);
+            writeln!(text, "GOTO/{x:.6},{beside:.6},10,{i:.9},{j:.9},{k:.9}").unwrap();
+        }
+        text += "RAPID\nGOTO/40,0,60,0.4472136,0,0.8944272\nFINI\n";
+        fs::write(&file, text).unwrap();
+        let job = Job { machine, cl: file.to_str().unwrap(), with: &with };
+        match posted {
+            true => drop(job.right()),
+            false => {
+                let refused = job.posted().unwrap_err();
+                let says = "the program has the tool's vector in their place";
+                assert!(refused.contains(says), "{machine} {beside}: {refused}");
+            }
+        }
     }
 }
 

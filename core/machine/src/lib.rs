@@ -25,6 +25,7 @@ pub mod place;
 pub mod program_text;
 pub mod servo;
 pub mod tilted_plane;
+pub mod vector_choice;
 pub mod wait_rule;
 pub mod word_map;
 pub mod wrap_mode;

@@ -611,6 +611,6 @@ pub(crate) fn no_vector_says_it(machine: &Machine, joints: &Joints) -> Diagnosti
         rotary_values(machine, joints)
     );
     Diagnostic::error("jump", message).help(
-        "write rotary words: leave out the dialect's option tool_vector, tool_vectors; or keep to one solution: [solution] start, prefer, a smaller part of the travel",
+        "write rotary words: leave out orientation = \"vector\" ([control]) or the dialect's option tool_vector, tool_vectors; or keep to one solution: [solution] require, start, prefer, a smaller part of the travel",
     )
 }

@@ -69,7 +69,7 @@ pub fn run(words: &str) -> Result<(), String> {
         std::iter::once("post").chain(words.split_whitespace()).map(Into::into).collect();
     post_command::run_words(&session, &line).map_err(|fault| match fault {
         CommandFault::Usage(fault) => panic!("the command line {words}: {fault}"),
-        CommandFault::Job(fault) => {
+        CommandFault::Job(fault) | CommandFault::NotLooked(fault) => {
             let findings = fault.findings();
             findings.iter().map(|found| format!("{}: {}\n", found.code, found.message)).collect()
         }

@@ -283,6 +283,11 @@ impl RunColumns {
         if over > 0.0 {
             self.end_before(|run, lane| !tolerances.hold(run.bound(lane)));
         }
+        if placer.vectors.is_some() {
+            self.end_before(|run, lane| {
+                placer.led_elsewhere(&run.joints_before(lane), &run.joints_at(lane))
+            });
+        }
         if placer.shown.is_empty() {
             return;
         }

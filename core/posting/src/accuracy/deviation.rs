@@ -283,7 +283,7 @@ impl NodeMove<'_> {
     #[inline]
     pub(super) fn goes_another_way(&self) -> bool {
         let (from, to) = (&self.from.trace.joints, &self.to.trace.joints);
-        self.placer.turns_too_far(from, to)
+        self.placer.turns_too_far(from, to) || self.placer.led_elsewhere(from, to)
     }
 
     fn sampled(&self, bend: DerivativeBound) -> DeviationBound {

@@ -17,6 +17,7 @@ use post_machine::kinematics::choose::{RotaryAxes, RotaryTravel};
 use post_machine::kinematics::travel::{AT_END, OverTravel, over};
 use post_machine::kinematics::{Joints, MAX_AXES, Pose, Solver, Trace, Unreachable};
 use post_machine::tilted_plane::TiltedPlane;
+use post_machine::vector_choice::{AIMED, VectorChoice};
 
 /// A point of the path, solved and rounded.
 #[derive(Clone, Copy, Debug, Default)]
@@ -60,6 +61,9 @@ impl PathNode {
 
 /// A control that shows an axis over one turn takes the shorter way: no block turns it by more, radians.
 pub(super) const LONGEST: f64 = 2.9;
+
+/// Rotary axes that are farther apart stand elsewhere, radians.
+const ELSEWHERE: f64 = 1e-6;
 
 /// Sum of all that the chain is long, its linear axes at zero, mm.
 fn reach(machine: &Machine, solver: &Solver) -> f64 {
@@ -110,6 +114,8 @@ pub struct Placer {
     axis_rounding: f64,
     /// What is left of the tolerance of the tip in cuts, mm.
     reserve: f64,
+    /// What a control chooses that is told the tool axis as a vector; none where rotary axes have words.
+    pub(super) vectors: Option<VectorChoice>,
 }
 
 impl Placer {
@@ -188,6 +194,7 @@ impl Placer {
             branch: Cell::new(0),
             axis_tolerance: machine.accuracy.axis_tolerance,
             reserve: 0.0,
+            vectors: None,
             control_point: machine.control_point,
             indexed: (0..machine.axes.len())
                 .filter(|joint| machine.axes[*joint].joint.rotary)
@@ -534,6 +541,22 @@ impl Placer {
     /// Rounds a point to the words' decimals: see [`AxisWords::printed_point`].
     pub(crate) fn printed_point(&self, point: Vector3<f64>) -> Option<([f64; 3], Vector3<f64>)> {
         self.words.printed_point(point)
+    }
+
+    /// Copies the placer for a control that is told the tool axis as a vector, and chooses the rotary axes itself.
+    pub(crate) fn by_vector(self, machine: &Machine) -> Self {
+        Self { vectors: Some(VectorChoice::of(machine)), ..self }
+    }
+
+    /// Would a control that is told the tool axis of `to` alone turn the rotary axes to another place than there?
+    pub(super) fn led_elsewhere(&self, from: &Joints, to: &Joints) -> bool {
+        let Some(choice) = &self.vectors else {
+            return false;
+        };
+        let pose = self.solver.chain().forward(to);
+        let found = self.solver.inverse(&pose, from, AIMED);
+        let taken = found.ok().and_then(|found| choice.taken(&found, from));
+        taken.is_some_and(|taken| choice.apart(&taken, to) > ELSEWHERE)
     }
 
     /// Does a block turn an axis that the control shows over one turn so far that it would go the other way round?

@@ -27,8 +27,8 @@ use post_machine::description::{Machine, Tcp};
 use post_plugin::{Capabilities, Format, ModelSession};
 
 use crate::accuracy::{
-    DeviationBound, Lineariser, MoveRoom, NodeMove, NodeRun, PathNode, PlacedBatch, Placer,
-    RunPosition,
+    DeviationBound, LineariseError, Lineariser, MoveRoom, NodeMove, NodeRun, PathNode, PlacedBatch,
+    Placer, RunPosition,
 };
 use crate::configuration::{ChoiceNote, ChosenPoint, pose};
 use crate::curve::CurvePolicy;
@@ -662,9 +662,15 @@ impl<'a> BlockStage<'a> {
                 self.tool_line = None;
                 return self.split(legs, MoveRoom::Free, nodes, out);
             }
-            Err((leg, stuck)) => {
-                let leg = &legs[leg];
-                let finding = refusal::stuck(self.machine, &stuck, leg.motion);
+            Err((place, stuck)) => {
+                let leg = &legs[place];
+                let finding = match stuck {
+                    LineariseError::Jump { .. } if self.by_vector => {
+                        let joints = &nodes[place + 1].trace.joints;
+                        refusal::no_vector_says_it(self.machine, joints)
+                    }
+                    _ => refusal::stuck(self.machine, &stuck, leg.motion),
+                };
                 self.findings.at(leg.line, finding);
             }
         }

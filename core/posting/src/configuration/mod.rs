@@ -30,7 +30,7 @@ use std::f64::consts::TAU;
 use std::rc::Rc;
 
 use nalgebra::Vector3;
-use post_machine::description::{Machine, Positions};
+use post_machine::description::{Machine, Positions, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::Pose;
 use post_machine::kinematics::travel::{AT_END, passed};
@@ -147,11 +147,16 @@ impl<'a> ConfigurationStage<'a> {
         writes: Capabilities,
         findings: &Findings,
     ) -> Result<Self, Box<Diagnostic>> {
+        let route = Route::new(machine, format, told_length.unwrap_or(0.0))?;
+        let vectors = machine.control.tcp == Tcp::Control && writes.has(Capabilities::TOOL_VECTOR);
         Ok(Self {
             lengths: LengthAxisCheck::new(writes),
             machine,
             base: machine,
-            route: Route::new(machine, format, told_length.unwrap_or(0.0))?,
+            route: match vectors {
+                true => route.by_vector(),
+                false => route,
+            },
             setting: None,
             waiting: VecDeque::new(),
             between: 0,

@@ -49,6 +49,8 @@ pub(crate) struct Route<'a> {
     pub(super) machine: &'a Machine,
     format: Format,
     tool_length: f64,
+    /// The control is told the tool axis as a vector.
+    vectors: bool,
     /// A placer for each set of values that the redundant axes were held at.
     pub(super) settings: Vec<(Joints, Rc<Placer>)>,
     /// Which of them new points get.
@@ -187,6 +189,7 @@ impl<'a> Route<'a> {
             machine,
             format: format.clone(),
             tool_length,
+            vectors: false,
             trellis: Trellis::new(machine, &placer),
             settings: vec![(near, Rc::new(placer))],
             setting: 0,
@@ -207,6 +210,15 @@ impl<'a> Route<'a> {
             chosen: Vec::new(),
             way: Backtrace::default(),
         })
+    }
+
+    /// The route of a program whose control is told the tool axis as a vector.
+    pub(crate) fn by_vector(mut self) -> Self {
+        self.vectors = true;
+        for (_, placer) in &mut self.settings {
+            *placer = Rc::new(Placer::clone(placer).by_vector(self.machine));
+        }
+        self
     }
 
     /// The placer that solves a chosen point.
@@ -267,11 +279,11 @@ impl<'a> Route<'a> {
         tool_length: f64,
     ) -> Result<(), Box<Diagnostic>> {
         let held = self.settings[self.setting].0;
-        let placer = Placer::for_machine(machine, &self.format, tool_length, &held)?;
         self.machine = machine;
+        self.tool_length = tool_length;
+        let placer = self.placer_held(&held)?;
         self.judge.machine = machine;
         self.tries_positions = tries_positions(machine);
-        self.tool_length = tool_length;
         self.trellis = Trellis::new(machine, &placer);
         self.settings = vec![(held, Rc::new(placer))];
         self.setting = 0;
@@ -309,13 +321,19 @@ impl<'a> Route<'a> {
         Ok(true)
     }
 
+    /// What solves points with these values of the redundant axes.
+    fn placer_held(&self, held: &Joints) -> Result<Placer, Box<Diagnostic>> {
+        let placer = Placer::for_machine(self.machine, &self.format, self.tool_length, held)?;
+        Ok(if self.vectors { placer.by_vector(self.machine) } else { placer })
+    }
+
     /// The setting with these values of the redundant axes.
     pub(super) fn setting_for(&mut self, held: &Joints) -> Result<usize, Box<Diagnostic>> {
         let known = self.settings.iter().position(|(known, _)| known == held);
         if let Some(known) = known {
             return Ok(known);
         }
-        let placer = Placer::for_machine(self.machine, &self.format, self.tool_length, held)?;
+        let placer = self.placer_held(held)?;
         self.settings.push((*held, Rc::new(placer)));
         Ok(self.settings.len() - 1)
     }

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use post_machine::axis_words::is_depth;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, MAX_AXES, Pose};
+use post_machine::vector_choice::{AIMED, VectorChoice};
 use post_motion::path::BSpline;
 use post_plugin::Language;
 use std::f64::consts::TAU;
@@ -17,9 +18,6 @@ pub(super) const REACHED: f64 = 1e-6;
 
 /// Most turns of an arc by axes that do not stand across one another: it is followed as a spline.
 const MOST_LEANING: f64 = 1_000.0;
-
-/// A vector is reached if the tool axis misses it by no more than this, radians: vectors have few decimals.
-const AIMED: f64 = 1e-4;
 
 /// Where a motion goes, as words say it; what is not said stays.
 #[derive(Clone, Copy, Debug, Default)]
@@ -385,28 +383,8 @@ impl ControlState {
             )
         };
         let found = self.state.solver.inverse(&pose, &last, AIMED).map_err(|_| cannot())?;
-        let mut best: Option<(f64, Joints)> = None;
-        for solution in &found {
-            let mut joints = *solution;
-            let mut way = 0.0;
-            let mut inside = true;
-            for (place, machine_axis) in self.machine.axes.iter().enumerate() {
-                if self.axes.rotary & (1 << place) == 0 {
-                    continue;
-                }
-                joints[place] = nearest_turn(joints[place], last[place], machine_axis.travel);
-                if let Some([least, most]) = machine_axis.travel {
-                    inside &= joints[place] >= least - 1e-9 && joints[place] <= most + 1e-9;
-                }
-                way += libm::fabs(joints[place] - last[place]);
-            }
-            // One outside its travel is taken only if there is no other.
-            let way = if inside { way } else { way + 1e6 };
-            if best.as_ref().is_none_or(|(least, _)| way < *least) {
-                best = Some((way, joints));
-            }
-        }
-        let Some((_, joints)) = best else {
+        let taken = VectorChoice::of(&self.machine).taken(&found, &last);
+        let Some(joints) = taken else {
             return Err(cannot());
         };
         if found.len() > 1 {
@@ -606,19 +584,4 @@ fn by_sign(value: f64, last: f64) -> f64 {
     }
     let turns = if value.is_sign_negative() { libm::floor(turns) } else { libm::ceil(turns) };
     place + turns * TAU
-}
-
-/// The place of `value` on the circle next to `last` that lies inside `travel`.
-pub(super) fn nearest_turn(value: f64, last: f64, travel: Option<[f64; 2]>) -> f64 {
-    let near = shorter(value, last);
-    let Some([least, most]) = travel else {
-        return near;
-    };
-    if near > most + 1e-9 && near - TAU >= least - 1e-9 {
-        near - TAU
-    } else if near < least - 1e-9 && near + TAU <= most + 1e-9 {
-        near + TAU
-    } else {
-        near
-    }
 }

@@ -8,11 +8,11 @@ use post_grammar::nc::NcValue;
 use post_machine::diagnostic::Diagnostic;
 use post_machine::kinematics::{Joints, Pose, Trace};
 use post_machine::tilted_plane::rotation;
+use post_machine::vector_choice::nearest_turn;
 use post_plugin::{Language, Meaning};
 
 use super::block_words::BlockWords;
 use super::frame::CoordinateFrame;
-use super::go::nearest_turn;
 use super::state::ControlState;
 use crate::MotionKind;
 use crate::g_code::GCode;

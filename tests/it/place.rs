@@ -8,6 +8,7 @@ use std::path::Path;
 
 use common::{Run, command, post, read_json, root, run};
 use nalgebra::{Rotation3, Vector3};
+use post_testkit::{all_drawn, drawn};
 use post_testruns::read_back::{Model, blocks, table};
 use serde_json::Value;
 
@@ -416,27 +417,27 @@ fn a_chain_whose_rotary_axes_place_the_tip_is_not_searched() {
 #[test]
 fn a_mount_that_a_message_names_brings_the_axis_inside() {
     let mut named = 0;
-    for row in LIBRARY {
+    let mounts = ["9000,0,0", "0,9000,0", "0,0,9000", "0,0,-9000"];
+    let cases = LIBRARY.iter().flat_map(|row| mounts.map(|mount| (row, mount)));
+    for (row, mount) in drawn(cases.collect(), 17) {
         let file = format!("tests/machines/{}.{}", row.machine, row.ending);
         let length = row.length.to_string();
-        for mount in ["9000,0,0", "0,9000,0", "0,0,9000", "0,0,-9000"] {
-            let at = |mount: &str| {
-                let base = ["-q", "-m", row.machine, &file, "--tool-length", &length];
-                post(&[&base[..], &["-o", "-", "--mount", mount]].concat())
-            };
-            let refused = at(mount);
-            let help = refused.err.split("help: --mount ").nth(1);
-            let Some((mount, rest)) = help.and_then(|help| help.split_once(" brings ")) else {
-                continue;
-            };
-            let axis = rest.split(' ').next().unwrap();
-            let next = at(mount);
-            let over = format!("]: {axis} would be");
-            let said =
-                next.err.lines().any(|line| line.starts_with("error") && line.contains(&over));
-            assert!(!said, "{} at {mount}: {}", row.machine, next.err);
-            named += 1;
-        }
+        let at = |mount: &str| {
+            let base = ["-q", "-m", row.machine, &file, "--tool-length", &length];
+            post(&[&base[..], &["-o", "-", "--mount", mount]].concat())
+        };
+        let refused = at(mount);
+        let help = refused.err.split("help: --mount ").nth(1);
+        let Some((mount, rest)) = help.and_then(|help| help.split_once(" brings ")) else {
+            continue;
+        };
+        let axis = rest.split(' ').next().unwrap();
+        let next = at(mount);
+        let over = format!("]: {axis} would be");
+        let said = next.err.lines().any(|line| line.starts_with("error") && line.contains(&over));
+        assert!(!said, "{} at {mount}: {}", row.machine, next.err);
+        named += 1;
     }
-    assert!(named > 20, "{named}");
+    let least = if all_drawn() { 20 } else { 2 };
+    assert!(named > least, "{named}");
 }

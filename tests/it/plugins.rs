@@ -189,7 +189,7 @@ fn the_kit_finds_nothing_wrong_with_the_stock_plugins() {
             _ => &[],
         };
         let test = |plugin: &str| {
-            let all = ["plugin", "test", plugin, "--events", "20000"];
+            let all = ["plugin", "test", plugin, "--events", "4000"];
             common::post(&[&all, named].concat())
         };
         let opened = test(file.to_str().unwrap());

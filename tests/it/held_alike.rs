@@ -237,3 +237,36 @@ fn the_feed_of_a_tip_that_hardly_moves_is_that_of_its_way() {
         right_text(machine, text);
     }
 }
+
+/// Where two solutions lie side by side the choice may go over from one to the other in a cut. In a plane the tool points as
+/// well as it stands: the cut goes on in the plane that it began in (it was left out, and the tool came down on its end).
+#[test]
+fn a_cut_goes_on_in_the_plane_that_it_began_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let machine = file(
+        "m.toml",
+        "name = \"skewed table\"\nchain = \"[w C' b Z X Y B (S) t]\"\n\
+         [workpiece]\nmount = [-8.617, 17.44, -0.132]\n[tool]\ngauge = [0.832, 4.03, 401.158]\n\
+         [axis.C]\nrotary = [0.007679, 0.735486, 0.68205]\npoint = [0.082833, 0.514399, 0.126855]\ntravel = [-400, 400]\n\
+         [axis.Z]\nlinear = [0, 0, 1]\ntravel = [-2000, 2000]\n\
+         [axis.X]\nlinear = [1, 0, 0]\ntravel = [-2000, 2000]\n\
+         [axis.Y]\nlinear = [0, 1, 0]\ntravel = [-2000, 2000]\n\
+         [axis.B]\nrotary = [0, 1, 0]\npoint = [-88.606523, 40.53039, 577.911018]\ntravel = [-400, 400]\n\
+         [control]\ndialect = \"fanuc\"\ntcp = \"control\"\n[accuracy]\ntolerance = 0.005\n[tools.2]\nlength = 179.6\n",
+    );
+    let cl = file(
+        "p.cls",
+        "UNITS/MM\nMULTAX/ON\nLOADTL/2\nSPINDL/RPM,7122,CLW\nRAPID\n\
+         GOTO/-31.366014,-9.508959,-14.108354,0,0,1\nFEDRAT/2181,MMPM\n\
+         GOTO/-31.366014,-9.508959,-25.728605,0,0,1\nGOTO/-20.704471,-2.153442,-6.851444,0,0,1\nRAPID\n\
+         GOTO/-20.704471,-2.153442,18.148556,0,0,1\nFINI\n",
+    );
+    let job = Job { machine: &machine, cl: &cl, with: &[] };
+    let program = job.right();
+    assert_eq!(program.matches("G68.2").count(), 1, "{program}");
+}

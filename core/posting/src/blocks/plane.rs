@@ -15,6 +15,7 @@ use post_plugin::Format;
 use super::{BlockNote, BlockSink, BlockStage, TURN};
 use crate::accuracy::{PathNode, Placer, RunColumns};
 use crate::configuration::{ChosenPoint, pose};
+use crate::program::MoveFeed;
 
 /// A place so near to the middle between two printed values may stand at either, in last decimals.
 const BETWEEN: f64 = 0.1;
@@ -56,7 +57,8 @@ impl ActivePlane {
         }
     }
 
-    /// Another branch or another full turn of the axes is another plane.
+    /// Another branch or another full turn of the axes is another plane. A cut goes on in the one that it began in, in which
+    /// the tool points as well, wherever the choice would go over to a branch that is near.
     #[inline]
     fn stays(&self, stands: &Joints, chosen: &ChosenPoint) -> bool {
         let alike = |placer: &Rc<Placer>| {
@@ -65,7 +67,8 @@ impl ActivePlane {
                 .filter(|(_, joint)| joint.rotary)
                 .all(|(place, _)| (stands[place] - chosen.joints[place]).abs() <= TURN)
         };
-        !chosen.changed || self.outside.as_ref().is_some_and(alike)
+        let cuts = chosen.motion.pace != MoveFeed::Rapid;
+        !chosen.changed || cuts || self.outside.as_ref().is_some_and(alike)
     }
 }
 

@@ -178,7 +178,10 @@ fn what_is_not_determined_is_refused_and_a_bad_reading_is_told() {
     write("ball.csv", &rows.join("\n"));
     let done = post_in(folder.path(), &words);
     assert_eq!(done.code, 0, "{}", done.err);
-    assert_contains(&done.err, &["ball.csv, line 21: this reading is 0.", "measure it again"]);
+    assert_contains(
+        &done.err,
+        &["ball.csv, line 21: this reading is 0.", " sigma", "measure it again"],
+    );
     for (table, said) in [
         ("", "has no row"),
         ("X,Y,Z,A\n", "there is no column C"),
@@ -203,4 +206,84 @@ fn what_is_not_determined_is_refused_and_a_bad_reading_is_told() {
     );
     let done = post_in(folder.path(), &[&words[..], &["--fit", "C.pont"]].concat());
     assert_contains(&done.err, &["--fit C.pont", "did you mean `C.point`?"]);
+}
+
+/// What the lines of a table say that are left when some are taken out.
+fn without(text: &str, lines: &[usize]) -> String {
+    let kept = (1..).zip(text.lines()).filter(|(line, _)| !lines.contains(line));
+    kept.map(|(_, text)| format!("{text}\n")).collect()
+}
+
+/// The cells of a row of numbers.
+fn row(out: &str, name: &str) -> Vec<f64> {
+    let row = out.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("{out}"));
+    row[name.len()..].split_whitespace().map(|cell| cell.parse().unwrap()).collect()
+}
+
+/// The line numbers that are told as outliers.
+fn outliers(err: &str) -> Vec<usize> {
+    let told = err.lines().filter(|line| line.contains("from where the others say the ball is"));
+    let line = |told: &str| told.split("line ").nth(1)?.split(':').next()?.parse().ok();
+    told.map(|told| line(told).unwrap_or_else(|| panic!("{told}"))).collect()
+}
+
+#[test]
+fn readings_that_do_not_go_with_the_others_are_told_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = seeded(73);
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("drawing.toml", TABLE);
+    let words = ["calibrate", "ball.csv", "-m", "drawing.toml", "--tool-length", "100"];
+    let run = |table: &str| {
+        write("ball.csv", table);
+        let done = post_in(folder.path(), &words);
+        assert_eq!(done.code, 0, "{}", done.err);
+        done
+    };
+    // Good readings are not told: the worst of forty is no outlier.
+    let mut told = 0;
+    for _ in 0..20 {
+        let lines = moved(&mut rng);
+        let good = run(&readings(&mut rng, lines, 0.002, true));
+        told += outliers(&good.err).len();
+        assert!(told > 0 || !good.out.contains("without"), "{}", good.out);
+    }
+    assert!(told <= 1, "{told} of 800");
+    // Two that are off by ten sigma on the same side hide one another, and draw all numbers.
+    let lines = moved(&mut rng);
+    let good = readings(&mut rng, lines, 0.002, true);
+    let spoil = |text: &str, lines: &[usize], by: f64| -> String {
+        let rows = (1..).zip(text.lines()).map(|(line, row)| {
+            let mut cells: Vec<String> = row.split(';').map(str::to_owned).collect();
+            if lines.contains(&line) {
+                cells[3] = (cells[3].parse::<f64>().unwrap() + by).to_string();
+            }
+            cells.join(";") + "\n"
+        });
+        rows.collect()
+    };
+    let bad = spoil(&good, &[9, 31], 0.04);
+    let spoilt = run(&bad);
+    let mut found = outliers(&spoilt.err);
+    found.sort_unstable();
+    assert_eq!(found, [9, 31], "{}", spoilt.err);
+    assert_contains(&spoilt.out, &["without", "lines "]);
+    // The numbers of the column are those of the table without them; the lines to paste are of all.
+    let left = run(&without(&bad, &[9, 31]));
+    for name in ["C.point X", "C.point Y", "A.point Y", "A.rotary Z"] {
+        let all = row(&spoilt.out, name);
+        assert_eq!(all.len(), 5, "{}", spoilt.out);
+        assert_eq!(all[3..], row(&left.out, name)[1..], "{}", spoilt.out);
+    }
+    let lines_of = |out: &str| out[out.find("extends").unwrap()..].to_owned();
+    assert_ne!(lines_of(&spoilt.out), lines_of(&left.out));
+    // How far off, in mm and sigma: 0.04 mm, the others known to 0.002 mm a coordinate.
+    for told in spoilt.err.lines().filter(|line| line.contains("sigma")) {
+        let number = |ahead: &str, behind: &str| -> f64 {
+            let text = told.split(ahead).nth(1).unwrap().split(behind).next().unwrap();
+            text.trim().parse().unwrap()
+        };
+        let (off, sigma) = (number("this reading is", "mm"), number("the ball is,", "sigma"));
+        assert!((0.03..0.05).contains(&off) && (8.0..35.0).contains(&sigma), "{told}");
+    }
 }

@@ -18,9 +18,6 @@ use crate::machine_files;
 use crate::nc_program::open_table;
 use crate::session::Session;
 
-/// A reading that is farther off its ball than this many standard deviations of a distance is told.
-const FAR: f64 = 4.0;
-
 /// What is to be found.
 #[derive(Clone, Debug)]
 pub struct CalibrationRequest {
@@ -45,6 +42,8 @@ pub struct CalibrationFound {
     pub readings: usize,
     /// What they say.
     pub calibration: Calibration,
+    /// Lines of the table that do not go with the others, in the order of the calibration's outliers.
+    pub outliers: Vec<u64>,
     /// Lines of a machine file that extends this one.
     pub lines: String,
     /// Readings that do not go with the others.
@@ -65,30 +64,29 @@ pub fn find(session: &Session, request: &CalibrationRequest) -> Result<Calibrati
     let table = points::read(&machine, request.length, &file, &text)?;
     let found = calibrate(&unknowns, &table.readings, &mut load);
     let calibration = found.map_err(|fault| refusal(&file, fault))?;
-    let far = FAR * libm::sqrt(3.0) * calibration.spread;
-    let off = calibration.left.iter().zip(&table.lines).filter(|(left, _)| **left > far);
     let errors = (!machine.errors.is_empty() || !machine.error_tables.is_empty()).then(|| {
         let message = "[error] tables of the machine file are not counted: the readings are taken for those of the axes as they are drawn";
         Diagnostic::warning("calibrate", message.to_owned())
             .help("measure first and calibrate, then measure the errors that are left")
     });
-    let findings = off
-        .map(|(left, line)| {
-            let message = format!(
-                "{file}, line {line}: this reading is {} mm off, the others say {} mm",
-                number(*left, 4),
-                number(calibration.after, 4)
-            );
-            Diagnostic::warning("calibrate", message).help(
-                "look at it, measure it again, or leave it out: one bad reading draws all numbers",
-            )
-        })
-        .chain(errors)
-        .collect();
+    let outliers: Vec<u64> =
+        calibration.outliers.iter().map(|outlier| table.lines[outlier.reading]).collect();
+    let told = calibration.outliers.iter().zip(&outliers).map(|(outlier, line)| {
+        let message = format!(
+            "{file}, line {line}: this reading is {} mm from where the others say the ball is, {} sigma",
+            number(outlier.off, 4),
+            number(outlier.sigma, 1)
+        );
+        Diagnostic::warning("calibrate", message).help(
+            "look at it, measure it again, or leave it out: one bad reading draws all numbers; it is among those that the lines below are of",
+        )
+    });
+    let findings = told.chain(errors).collect();
     Ok(CalibrationFound {
         readings: table.readings.len(),
         lines: lines(name, &unknowns, &calibration),
         calibration,
+        outliers,
         findings,
     })
 }

@@ -5,12 +5,15 @@
 //! machine are those with which all readings of a ball say the same (Gauss-Newton; each ball's place is the mean of what
 //! its readings say, which is the best there is). Standard errors follow from what is left over: `σ² (JᵀJ)⁻¹`.
 
+mod outlier;
 mod unknown;
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
+pub use outlier::Outlier;
 pub use unknown::{CalibratedLine, Unknown};
 
+use self::outlier::Residuals;
 use crate::description::{Machine, Setting};
 use crate::kinematics::chain::turn;
 use crate::kinematics::{Chain, Joints};
@@ -68,12 +71,14 @@ pub struct Calibration {
     pub before: f64,
     /// Likewise with those found.
     pub after: f64,
-    /// Distance of each reading from its ball, mm, with the numbers found, in the order of the readings.
-    pub left: Vec<f64>,
     /// Standard deviation of a coordinate of a reading, mm.
     pub spread: f64,
     /// The settings that make the machine so.
     pub settings: Vec<Setting>,
+    /// Readings that do not go with the others, worst first; the numbers are of all readings, these among them.
+    pub outliers: Vec<Outlier>,
+    /// What the other readings say, where there are such; none if they do not determine the numbers.
+    pub without: Option<Box<Calibration>>,
 }
 
 /// Why there is none.
@@ -99,6 +104,26 @@ pub enum CalibrationFault<E> {
 /// # Errors
 /// Numbers that the readings do not determine, and a machine that cannot be with what they say.
 pub fn calibrate<E>(
+    unknowns: &[Unknown],
+    readings: &[BallReading],
+    load: &mut dyn FnMut(&[Setting]) -> Result<Machine, E>,
+) -> Result<Calibration, CalibrationFault<E>> {
+    let mut found = fitted(unknowns, readings, load)?;
+    if !found.outliers.is_empty() {
+        let bad = |place: &usize| found.outliers.iter().any(|outlier| outlier.reading == *place);
+        let others = readings.iter().enumerate().filter(|(place, _)| !bad(place));
+        let others: Vec<BallReading> = others.map(|(_, reading)| *reading).collect();
+        match fitted(unknowns, &others, load) {
+            Ok(without) => found.without = Some(Box::new(without)),
+            Err(CalibrationFault::Machine(error)) => return Err(CalibrationFault::Machine(error)),
+            Err(_) => {}
+        }
+    }
+    Ok(found)
+}
+
+/// The numbers with which all of `readings` go best.
+fn fitted<E>(
     unknowns: &[Unknown],
     readings: &[BallReading],
     load: &mut dyn FnMut(&[Setting]) -> Result<Machine, E>,
@@ -152,14 +177,17 @@ pub fn calibrate<E>(
         value: values[index],
         deviation: deviation(index),
     });
+    let of_balls: Vec<usize> = readings.iter().map(|reading| reading.ball).collect();
+    let residuals = Residuals { derivatives: &derivatives, off: &left, balls: &of_balls };
     let mean = |errors: &DVector<f64>| errors.norm() / libm::sqrt(have as f64);
     Ok(Calibration {
         numbers: numbers.collect(),
         before: mean(&first),
         after: mean(&left),
-        left: left.as_slice().chunks(3).map(|own| Vector3::from_column_slice(own).norm()).collect(),
         spread,
         settings: unknown::settings(unknowns, &values),
+        outliers: residuals.outliers(),
+        without: None,
     })
 }
 

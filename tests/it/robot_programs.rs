@@ -697,3 +697,28 @@ fn what_cannot_be_led_straight_is_refused() {
         "axes that carry the part lead joints alone",
     );
 }
+
+/// A program of a robot that never takes its only tool is told, if it was posted: another hand may begin with it.
+#[test]
+fn a_tool_that_is_never_taken_is_told() {
+    for (dialect, file, call) in [
+        ("rapid", "part.mod", "ChangeTool"),
+        ("krl", "part.src", "CHANGE_TOOL"),
+        ("urscript", "part.script", "change_tool"),
+    ] {
+        let (folder, with, program) = straight(dialect, file);
+        let calls = |line: &&str| line.to_lowercase().contains(&call.to_lowercase());
+        assert_eq!(program.lines().filter(calls).count(), 1, "{program}");
+        let without: Vec<&str> = program.lines().filter(|line| !calls(line)).collect();
+        fs::write(folder.path().join("without"), without.join("\n") + "\n").unwrap();
+        let verify = |name: &str, more: &[&str]| {
+            let against = ["verify", name, "--against", "part.cls"];
+            post(folder.path(), &[&against[..], more, &with].concat())
+        };
+        assert_eq!(verify(file, &["--posted"]).code, 0, "{dialect}");
+        assert_eq!(verify("without", &[]).code, 0, "{dialect}");
+        let told = verify("without", &["--posted"]);
+        let says = "cuts with no tool changed in, and the CL file asks for 1";
+        assert!(told.code == 1 && told.err.contains(says), "{dialect}: {}", told.err);
+    }
+}

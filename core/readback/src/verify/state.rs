@@ -122,7 +122,7 @@ impl<C: Course> Verifier<'_, C> {
             self.fault("tool", message, Some(motion), cl_line, None);
         } else if state.tool.is_none()
             && let Some(wants) = asked.tool
-            && self.rules.length_from.are_named()
+            && (self.rules.own || self.rules.length_from.are_named())
         {
             let message = format!("cuts with no tool changed in, and the CL file asks for {wants}");
             self.fault("tool", message, Some(motion), cl_line, None);

@@ -72,6 +72,13 @@ impl Inequality {
         if least.is_nan() { f64::NEG_INFINITY } else { least }
     }
 
+    /// An upper bound on the margin while each name stays within bounds of its own.
+    pub fn most_margin(&self, name: &dyn Fn(&str) -> Option<Bounds>) -> f64 {
+        let (left, right) = (self.left.bounds(name), self.right.bounds(name));
+        let most = if self.falls { left[1] - right[0] } else { right[1] - left[0] };
+        if most.is_nan() { f64::INFINITY } else { most }
+    }
+
     /// The sign between the sides, as it is read: an end belongs to what holds.
     pub fn sign(&self) -> &'static str {
         if self.falls { "≥" } else { "≤" }

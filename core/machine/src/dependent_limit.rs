@@ -132,6 +132,17 @@ impl DependentLimit {
         }
     }
 
+    /// Nowhere does it hold while each axis stays between its value in `least` and that in `most`.
+    pub(crate) fn is_out(&self, [least, most]: [&Joints; 2]) -> bool {
+        match &self.rule {
+            Rule::Formula(inequality, names) => {
+                let known = names.between([least, most]);
+                inequality.most_margin(&|name| known.of(name)) < 0.0
+            }
+            Rule::Reach(leg) => leg.is_out([least, most]),
+        }
+    }
+
     /// A place at which it is passed, or not proven to hold, while each axis goes for itself between its value in `least`
     /// and that in `most`.
     pub fn passed_between(&self, ends: [&Joints; 2]) -> Option<Joints> {

@@ -307,17 +307,22 @@ fn errors(rows: &mut NamedValues, of_machine: &ErrorsReport) {
         axis.largest.iter().for_each(|told| rows.row("", told));
     }
     let [x, y, z] = of_machine.tip.map(|value| number(value, 5));
-    rows.row(
-        "errors together",
-        format_args!(
+    let together = match of_machine.tip_at.as_slice() {
+        [] => "the tip stands nowhere off".to_owned(),
+        at => format!(
             "the tip stands up to {} mm off, ({x}, {y}, {z}), at {}: posted words take it out",
             number(of_machine.tip_mm, 5),
-            readings(&of_machine.tip_at)
+            readings(at)
         ),
-    );
+    };
+    rows.row("errors together", together);
     if of_machine.axis_deg > 0.0 {
         let angle = number(of_machine.axis_deg, 5);
-        rows.row("", format_args!("the tool axis leans up to {angle}° off, which stays"));
+        let stays = match of_machine.axis_stays {
+            true => "which stays",
+            false => "of which posted words take out what the axes can",
+        };
+        rows.row("", format_args!("the tool axis leans up to {angle}° off, {stays}"));
     }
 }
 
@@ -376,6 +381,10 @@ fn volume(rows: &mut NamedValues, volume: &Volume, length: f64) {
     rows.row("", format_args!("{} mm", spans.collect::<Vec<_>>().join(", ")));
     if !within.is_empty() {
         rows.row("", format_args!("as far as what must hold between the axes leaves it: {within}"));
+    }
+    if let Some(open) = volume.open_mm {
+        let open = number(open, 3);
+        rows.row("", format_args!("found so; up to {open} mm more at an end is not ruled out"));
     }
 }
 

@@ -248,3 +248,46 @@ fn check_tells_where_the_tip_goes_within_limits() {
     assert!(cone.contains("tilt from +Z in all azimuths: 30°"), "{cone}");
     assert!(cone.contains("where `abs(B) < 30` holds"), "{cone}");
 }
+
+/// The tip's box of `post check` in a round limit, the slides leaning: X- X+ Y- Y+ Z- Z+, and what is not ruled out.
+fn tip_box(keep: &str, seen: &str) -> ([f64; 6], f64) {
+    let lean = std::f64::consts::FRAC_1_SQRT_2;
+    let text = format!(
+        "name = \"disc\"\nchain = \"[w b X Y Z (S) t]\"\ntool.gauge = [0, 0, 500]\nworkpiece.mount = [0, 0, 0]\n\
+         [axis.X]\nlinear = [{lean}, {lean}, 0]\ntravel = [-310, 290]\n[axis.Y]\nlinear = [-{lean}, {lean}, 0]\n\
+         travel = [-300, 333]\n[axis.Z]\nlinear = [0, 0, 1]\ntravel = [-450, 0]\n[[limit]]\nkeep = {keep:?}\n\
+         [control]\ndialect = \"fanuc\"\n"
+    );
+    let folder = crate::common::with_file("m.toml", &text);
+    let run = crate::common::post_in(folder.path(), &["check", "m.toml", "--tool-length", "50"]);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(!run.err.contains("holds nowhere"), "{}", run.err);
+    assert!(run.out.contains(seen), "{}", run.out);
+    let line = run.out.lines().skip_while(|line| !line.starts_with("travel of the tip")).nth(1);
+    let numbers = line.unwrap().split([' ', ',']).filter_map(|word| word.parse().ok());
+    let open =
+        run.out.split("up to ").nth(1).and_then(|rest| rest.split(" mm more at an end").next());
+    let open = open.and_then(|open| open.parse().ok()).unwrap_or(0.0);
+    (numbers.collect::<Vec<f64>>().try_into().unwrap(), open)
+}
+
+/// Ends of a disc and of a ball across slides that lean by 45 degrees, worked out by hand.
+#[test]
+fn the_tips_box_in_a_round_limit_has_its_ends() {
+    let (ends, open) = tip_box("X^2 + Y^2 < 200^2", "");
+    let wanted = [-200.0, 200.0, -200.0, 200.0, 0.0, 450.0];
+    assert!(open == 0.0, "{open}");
+    for (own, wanted) in ends.iter().zip(wanted) {
+        assert!((own - wanted).abs() < 0.003, "{ends:?}");
+    }
+    // Away from where the axes rest, too.
+    let (ends, open) = tip_box("(X - 20)^2 + (Y + 30)^2 + (Z + 200)^2 < 180^2", "not ruled out");
+    let lean = std::f64::consts::FRAC_1_SQRT_2;
+    let middle = [(20.0 + 30.0) * lean, (20.0 - 30.0) * lean, 250.0];
+    assert!(open < 1.5, "{open}");
+    for (place, own) in ends.iter().enumerate() {
+        let wanted = middle[place / 2] + if place % 2 == 0 { -180.0 } else { 180.0 };
+        let inside = (middle[place / 2] - own).abs() < 180.001;
+        assert!(inside && (own - wanted).abs() <= open + 0.01, "{place}: {ends:?}, {wanted}");
+    }
+}

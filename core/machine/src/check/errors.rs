@@ -25,6 +25,8 @@ pub struct ErrorsReport {
     pub tip_at: Vec<AxisReadout>,
     /// The largest turn of the tool axis that was found, degrees: rotary words do not take it out.
     pub axis_deg: f64,
+    /// Rotary axes are put as if there were no errors; else a search turns them too.
+    pub axis_stays: bool,
 }
 
 /// The errors of one axis.
@@ -51,6 +53,7 @@ pub(super) fn told(probe: &Probe<'_>) -> Option<ErrorsReport> {
         tip: [0.0; 3],
         tip_at: Vec::new(),
         axis_deg: 0.0,
+        axis_stays: probe.closed_form() || probe.solver().planar(),
     };
     let machine = probe.machine();
     for joints in places(probe) {

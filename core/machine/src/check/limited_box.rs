@@ -1,4 +1,11 @@
 //! The box of tips that limits between the axes leave of the travel of the linear axes.
+//!
+//! Each end of the box is looked for by branch and bound: boxes of axis values are halved, the one that could lead the tip
+//! farthest first; one in which a limit is proven to hold nowhere is given up. So the end lies between the farthest place that
+//! was found and the farthest that is not ruled out, and both are told.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 use nalgebra::Vector3;
 
@@ -6,28 +13,48 @@ use super::probe::Probe;
 use crate::dependent_limit::DependentLimit;
 use crate::kinematics::{Joints, MAX_AXES};
 
-/// Places of an axis that a limit names, by how many of them are looked at together.
-const PLACES: [usize; 4] = [1, 2001, 101, 25];
+/// An end is known if no more than this is not ruled out, mm.
+const ENOUGH: f64 = 0.001;
 
-/// The way to an end is narrowed down to this share of the step between two places.
-const NARROW: f64 = 1e-6;
+/// Boxes that are halved for one end, at most.
+const MOST_BOXES: usize = 20_000;
+
+/// Halvings of the way from the middle of a box to its farthest corner, on which the last place is looked for.
+const HALVINGS: u32 = 12;
 
 /// Least and largest tip, part frame, mm, while the rotary axes stand, and the limits that take something off it.
 pub(super) struct LimitedBox {
     /// None: the limits leave nothing that was looked at.
     pub(super) ends: Option<[Vector3<f64>; 2]>,
+    /// By how much an end may lie farther out than the place that was found, mm; none where that is less than the program's
+    /// digits.
+    pub(super) open: Option<f64>,
     pub(super) limited_by: Vec<String>,
 }
 
 /// The search for the ends.
 struct Search<'a> {
-    probe: &'a Probe<'a>,
     limits: Vec<&'a DependentLimit>,
-    /// Linear joints that limits name, and the others.
+    /// Linear joints that limits name.
     named: Vec<usize>,
-    others: Vec<usize>,
     /// How far the tip goes for a mm of each joint.
     ways: [Vector3<f64>; MAX_AXES],
+}
+
+/// Axis values between two places.
+struct Region {
+    least: Joints,
+    most: Joints,
+    /// How far the joints that limits name bring the tip towards the side at most, mm.
+    farthest: f64,
+}
+
+/// The end towards a side.
+struct End {
+    /// The farthest place that was found, and how far that is, mm.
+    found: Option<(f64, Joints)>,
+    /// Nothing lies farther, mm.
+    bound: f64,
 }
 
 impl LimitedBox {
@@ -45,63 +72,120 @@ impl LimitedBox {
             moved[*joint] += 1.0;
             ways[*joint] = probe.chain().forward(&moved).tip - stands;
         }
-        let search = Search { probe, limits, named, others, ways };
-        search.ends(at, stands)
+        let [mut least, mut most] = [*at; 2];
+        for joint in &named {
+            [least[*joint], most[*joint]] = probe.span(*joint);
+        }
+        let passed = |limit: &&&DependentLimit| {
+            let place = limit.passed_between([&least, &most]);
+            place.is_some_and(|joints| !limit.holds(&joints))
+        };
+        let limited_by =
+            limits.iter().filter(passed).map(|limit| limit.text().to_owned()).collect();
+        let search = Search { limits, named, ways };
+        let mut ends = [stands; 2];
+        let mut open: f64 = 0.0;
+        for side in 0..6 {
+            let End { found, bound } = search.end(side, (least, most));
+            let Some((value, mut joints)) = found else {
+                return LimitedBox { ends: None, open: None, limited_by };
+            };
+            open = open.max(bound - value);
+            for joint in &others {
+                let [least, most] = probe.span(*joint);
+                let grows = search.rate(side, *joint) > 0.0;
+                joints[*joint] = if grows { most } else { least };
+            }
+            ends[side % 2][side / 2] = probe.chain().forward(&joints).tip[side / 2];
+        }
+        LimitedBox {
+            ends: Some(ends),
+            open: Some(open).filter(|open| *open > 2.0 * ENOUGH),
+            limited_by,
+        }
     }
 }
 
 impl Search<'_> {
-    fn ends(&self, at: &Joints, stands: Vector3<f64>) -> LimitedBox {
-        let count = self.named.len();
-        let places = PLACES.get(count).copied().unwrap_or(9);
-        let mut best: [Option<(f64, Joints)>; 6] = [None; 6];
-        let mut passed = vec![false; self.limits.len()];
-        for number in 0..places.pow(count as u32) {
-            let mut joints = *at;
-            let mut digits = number;
-            for joint in &self.named {
-                let [least, most] = self.probe.span(*joint);
-                let share = (digits % places) as f64 / (places - 1).max(1) as f64;
-                joints[*joint] = least + (most - least) * share;
-                digits /= places;
+    /// The end towards a side: sides are X-, X+, Y-, Y+, Z-, Z+.
+    fn end(&self, side: usize, (least, most): (Joints, Joints)) -> End {
+        let mut regions = BinaryHeap::from([self.region(side, least, most)]);
+        let mut found: Option<(f64, Joints)> = None;
+        for _ in 0..MOST_BOXES {
+            let Some(region) = regions.pop() else {
+                break;
+            };
+            if found.is_some_and(|(value, _)| region.farthest <= value + ENOUGH) {
+                return End { found, bound: region.farthest };
             }
-            let mut holds = true;
-            for (limit, passed) in self.limits.iter().zip(&mut passed) {
-                let own = limit.margin(&joints) >= 0.0;
-                *passed |= !own;
-                holds &= own;
-            }
-            if !holds {
+            let Region { least, most, farthest } = &region;
+            if self.limits.iter().any(|limit| limit.is_out([least, most])) {
                 continue;
             }
-            for (side, best) in best.iter_mut().enumerate() {
-                let value = self.value(side, &joints);
-                if best.is_none_or(|(known, _)| value > known) {
-                    *best = Some((value, joints));
+            if let Some(last) = self.last_on_the_way(side, &region) {
+                let value = self.value(side, &last);
+                if found.is_none_or(|(known, _)| value > known) {
+                    found = Some((value, last));
+                }
+                if value >= *farthest {
+                    continue;
                 }
             }
-        }
-        let all = self.limits.iter().zip(&passed).filter(|(_, passed)| **passed);
-        let limited_by: Vec<String> = all.map(|(limit, _)| limit.text().to_owned()).collect();
-        let mut ends = [stands; 2];
-        for (side, best) in best.into_iter().enumerate() {
-            let Some((_, mut joints)) = best else {
-                return LimitedBox { ends: None, limited_by };
+            let width = |joint: &usize| most[*joint] - least[*joint];
+            let widest = self.named.iter().max_by(|a, b| width(a).total_cmp(&width(b)));
+            let Some(widest) = widest.filter(|widest| width(widest) > 0.0) else {
+                continue;
             };
-            if !limited_by.is_empty() {
-                self.narrow(side, &mut joints, places);
-            }
-            for joint in &self.others {
-                let [least, most] = self.probe.span(*joint);
-                let grows = self.rate(side, *joint) > 0.0;
-                joints[*joint] = if grows { most } else { least };
-            }
-            ends[side % 2][side / 2] = self.probe.chain().forward(&joints).tip[side / 2];
+            let middle = 0.5 * (least[*widest] + most[*widest]);
+            let (mut below, mut above) = (*most, *least);
+            below[*widest] = middle;
+            above[*widest] = middle;
+            regions.push(self.region(side, *least, below));
+            regions.push(self.region(side, above, *most));
         }
-        LimitedBox { ends: Some(ends), limited_by }
+        let value = found.map_or(f64::NEG_INFINITY, |(value, _)| value);
+        let bound = regions.peek().map_or(value, |region| region.farthest.max(value));
+        End { found, bound }
     }
 
-    /// How fast the tip goes towards a side, by a joint: sides are X-, X+, Y-, Y+, Z-, Z+.
+    fn region(&self, side: usize, least: Joints, most: Joints) -> Region {
+        let far = |joint: &usize| {
+            let rate = self.rate(side, *joint);
+            (rate * least[*joint]).max(rate * most[*joint])
+        };
+        Region { least, most, farthest: self.named.iter().map(far).sum() }
+    }
+
+    /// The last place at which all limits hold on the way from the middle of a region to the corner that leads farthest;
+    /// none where they do not hold in the middle.
+    fn last_on_the_way(&self, side: usize, region: &Region) -> Option<Joints> {
+        let [mut inside, mut outside] = [region.least; 2];
+        for joint in &self.named {
+            let [least, most] = [region.least[*joint], region.most[*joint]];
+            inside[*joint] = 0.5 * (least + most);
+            outside[*joint] = if self.rate(side, *joint) > 0.0 { most } else { least };
+        }
+        if self.hold(&outside) {
+            return Some(outside);
+        }
+        if !self.hold(&inside) {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = std::array::from_fn(|joint| 0.5 * (inside[joint] + outside[joint]));
+            match self.hold(&middle) {
+                true => inside = middle,
+                false => outside = middle,
+            }
+        }
+        Some(inside)
+    }
+
+    fn hold(&self, joints: &Joints) -> bool {
+        self.limits.iter().all(|limit| limit.margin(joints) >= 0.0)
+    }
+
+    /// How fast the tip goes towards a side, by a joint.
     fn rate(&self, side: usize, joint: usize) -> f64 {
         let sign = if side.is_multiple_of(2) { -1.0 } else { 1.0 };
         sign * self.ways[joint][side / 2]
@@ -111,31 +195,24 @@ impl Search<'_> {
     fn value(&self, side: usize, joints: &Joints) -> f64 {
         self.named.iter().map(|joint| self.rate(side, *joint) * joints[*joint]).sum()
     }
+}
 
-    /// Goes on towards a side as long as the limits hold, by ever shorter steps.
-    fn narrow(&self, side: usize, joints: &mut Joints, places: usize) {
-        let mut step = 1.0;
-        while step > NARROW {
-            let value = self.value(side, joints);
-            let ways = 3usize.pow(self.named.len() as u32);
-            let better = (0..ways).find_map(|way| {
-                let mut next = *joints;
-                let mut digits = way;
-                for joint in &self.named {
-                    let [least, most] = self.probe.span(*joint);
-                    let by = (most - least) / (places - 1).max(1) as f64 * step;
-                    next[*joint] =
-                        (next[*joint] + by * (digits % 3) as f64 - by).clamp(least, most);
-                    digits /= 3;
-                }
-                let farther = self.value(side, &next) > value;
-                (farther && self.limits.iter().all(|limit| limit.margin(&next) >= 0.0))
-                    .then_some(next)
-            });
-            match better {
-                Some(next) => *joints = next,
-                None => step /= 2.0,
-            }
-        }
+impl Ord for Region {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.farthest.total_cmp(&other.farthest)
     }
 }
+
+impl PartialOrd for Region {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Region {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Region {}

@@ -1,5 +1,7 @@
 //! What limits that depend on other axes leave of the travel.
 
+use std::collections::VecDeque;
+
 use serde::Serialize;
 
 use super::pointing::AxisReadout;
@@ -12,6 +14,9 @@ const PLACES: u32 = 2000;
 
 /// Halvings between a place where a limit holds and one where it does not.
 const HALVINGS: u32 = 40;
+
+/// Boxes of axis values in which a place where a limit holds is looked for, at most.
+const MOST_BOXES: usize = 20_000;
 
 /// A limit, and what it leaves of the travel of one axis while another goes over its own.
 #[derive(Clone, Debug, Serialize)]
@@ -81,9 +86,11 @@ fn report(probe: &Probe<'_>, limit: &DependentLimit, warnings: &mut Vec<String>)
             "[[limit]] `{}` holds everywhere inside travel: it limits nothing; is a sign or a side wrong?",
             limit.text()
         ));
-    } else if rooms.iter().all(|room| room.room.is_none()) {
+    } else if rooms.iter().all(|room| room.room.is_none())
+        && let Some(nowhere) = holds_nowhere(limit, &named, ends)
+    {
         warnings.push(format!(
-            "[[limit]] `{}` holds nowhere that was looked at inside travel; is a sign or a side wrong?",
+            "[[limit]] `{}` holds {nowhere}; is a sign or a side wrong?",
             limit.text()
         ));
     }
@@ -93,6 +100,42 @@ fn report(probe: &Probe<'_>, limit: &DependentLimit, warnings: &mut Vec<String>)
         unit: axes[own].unit_name(),
         rooms,
     }
+}
+
+/// Where a limit holds nowhere, the axes of `named` between their values in `ends`, as far as that is known; none if there is
+/// a place where it holds.
+fn holds_nowhere(
+    limit: &DependentLimit,
+    named: &[usize],
+    ends: [Joints; 2],
+) -> Option<&'static str> {
+    let mut boxes = VecDeque::from([ends]);
+    for _ in 0..MOST_BOXES {
+        let Some([least, most]) = boxes.pop_front() else {
+            return Some("nowhere inside travel");
+        };
+        let middle: Joints = std::array::from_fn(|joint| 0.5 * (least[joint] + most[joint]));
+        if limit.margin(&middle) >= 0.0 {
+            return None;
+        }
+        if limit.is_out([&least, &most]) {
+            continue;
+        }
+        // Of angles the whole turn counts as the whole travel of a slide.
+        let share = |joint: &usize| {
+            let whole = ends[1][*joint] - ends[0][*joint];
+            (most[*joint] - least[*joint]) / whole.max(f64::MIN_POSITIVE)
+        };
+        let widest = named.iter().max_by(|a, b| share(a).total_cmp(&share(b)));
+        let Some(widest) = widest.filter(|joint| share(joint) > 0.0) else {
+            continue;
+        };
+        let (mut below, mut above) = (most, least);
+        below[*widest] = middle[*widest];
+        above[*widest] = middle[*widest];
+        boxes.extend([[least, below], [above, most]]);
+    }
+    Some("nowhere that was looked at inside travel")
 }
 
 /// Least and largest reading of an axis inside its travel at which a limit holds, the others as in `joints`.

@@ -23,6 +23,8 @@ pub struct Volume {
     /// Limits between the axes that take something off what the travel alone would leave: `[[limit]]` as it is written, and
     /// legs by their names.
     pub limited_by: Vec<String>,
+    /// By how much an end may lie farther out than is told, mm, where limits leave that open; none where nothing is.
+    pub open_mm: Option<f64>,
     /// Axes that stand outside their travel with the tip on the part origin.
     pub origin_out: Vec<OutsideTravel>,
     /// What says of the limits between the axes that do not hold with the tip on the part origin.
@@ -54,7 +56,7 @@ impl Volume {
         let machine = probe.machine();
         let linear: Vec<usize> =
             (0..machine.axes.len()).filter(|place| !machine.axes[*place].joint.rotary).collect();
-        let LimitedBox { ends, limited_by } = LimitedBox::of(probe, &at_origin, &linear);
+        let LimitedBox { ends, open, limited_by } = LimitedBox::of(probe, &at_origin, &linear);
         let [least, most] = [0, 1].map(|end| {
             let ends = ends.filter(|_| probe.closed_form())?;
             Some(ends[end].into())
@@ -89,6 +91,7 @@ impl Volume {
             rotary,
             least,
             most,
+            open_mm: open.filter(|_| probe.closed_form()),
             limited_by: if probe.closed_form() { limited_by } else { Vec::new() },
             origin_out,
             origin_beyond,

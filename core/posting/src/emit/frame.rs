@@ -353,11 +353,33 @@ impl EmitStage<'_> {
         self.say_bare(line, TextPlace::LastLines);
     }
 
+    /// Warns of rotary axes that turn as the program begins, where `leave` says no place of the machine at which the tool is
+    /// off the part: nobody knows where it stands then.
+    fn tell_first_turn(&self, line: u64) {
+        let machine = self.machine;
+        let frame = &machine.frame;
+        let says_none = frame.retract.is_empty() && frame.aside.is_empty();
+        let slides = machine.axes.iter().any(|axis| !axis.joint.rotary);
+        let turns = machine.axes.iter().any(|axis| axis.joint.rotary);
+        let (Some(_), true) = (frame.leave, says_none && slides && turns && !self.comes_at_once())
+        else {
+            return;
+        };
+        let message = "rotary axes turn as the program begins, with the tool where the operator left it: [control] leave says no then";
+        self.findings.at(
+            line,
+            Diagnostic::warning("retract", message)
+                .help("then = { Z = \"max\" } of leave is where axes go before any turn"),
+        );
+    }
+
     /// The first position after the start, a tool change or a retract: the rotary axes turn with the tool clear of the
     /// part, are clamped, and then it comes near.
     pub(super) fn position(&mut self, block: &MotionBlock) {
         let line = block.line;
-        self.worked = true;
+        if !std::mem::replace(&mut self.worked, true) {
+            self.tell_first_turn(line);
+        }
         match block.reason {
             BlockReason::Above => self.extremes.reach_above(),
             _ => {

@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::Vector3;
 use post_machine::axis_words::is_depth;
 use post_machine::description::Machine;
 use post_machine::kinematics::orientation::on_two_faces;
@@ -66,8 +65,10 @@ struct RapidEnd {
     line: u64,
     number: Option<u64>,
     from: Joints,
-    /// Where its tip came from, mm.
-    came: Vector3<f64>,
+    /// Where the tool came from.
+    came: Pose,
+    /// The program has said before where the tool goes.
+    sent: bool,
     joints: Joints,
     pose: Pose,
     machine: bool,
@@ -120,7 +121,8 @@ impl Detour {
                 line: motion.line,
                 number: motion.number,
                 from: motion.from.joints,
-                came: motion.from.pose.tip,
+                came: motion.from.pose,
+                sent: motion.led != 0,
                 joints: motion.to.joints,
                 pose: motion.to.pose,
                 machine: motion.machine,
@@ -190,7 +192,7 @@ impl Detour {
                     let goes_on = motion.is_some() || end.behind < asked.len() + passed.len();
                     (came && goes_on).then(|| end.tip_low(&asked, poses, slack[0])).flatten()
                 }
-                Some(turns) if own => end.turns_astray(machine, turns, poses, slack[0]),
+                Some(turns) if own => end.turns_astray(machine, turns, poses, allowed),
                 _ if end.led && (own || end.leans_as(&asked, lean)) => None,
                 _ => {
                     let retracted = retract::is_retracted(machine, &end.from, slack[0]);
@@ -221,18 +223,27 @@ impl RapidEnd {
     }
 
     /// An axis turns neither on a way of the course, nor with the tip on the line of the tool at one of its places, nor
-    /// with the tool retracted.
+    /// with the tool retracted: drawn back as far as `leave` says where that says no more, or where no one knows of the tool
+    /// as a program begins.
     fn turns_astray<'p>(
         &self,
         machine: &Machine,
         axis: usize,
         mut poses: impl Iterator<Item = &'p Pose>,
-        slack: f64,
+        RapidAllowance { axes: [slack, _], lean, .. }: RapidAllowance,
     ) -> Option<StrayRapid> {
-        let on_line = |pose: &Pose| self.off_line(pose, slack) <= slack;
+        let leaves = retract::drawn_back(machine);
+        let sent = |pose: &Pose| {
+            let back = |distance: f64| {
+                let out = (self.came.tip - pose.tip).dot(&pose.axis);
+                on_the_line(&self.came, pose, slack, lean) && out >= distance - slack
+            };
+            self.off_line(pose, slack) <= slack || leaves.is_some_and(back)
+        };
         if retract::stays_retracted(machine, [&self.from, &self.joints], slack)
             || self.led
-            || poses.any(on_line)
+            || leaves.is_some() && !self.sent
+            || poses.any(sent)
         {
             return None;
         }
@@ -276,7 +287,7 @@ impl RapidEnd {
         if faces && (tip.inf(&least) != least || tip.sup(&most) != most) {
             return None;
         }
-        let falls = |pose: &Pose| (self.came - self.pose.tip).dot(&pose.axis) > slack;
+        let falls = |pose: &Pose| (self.came.tip - self.pose.tip).dot(&pose.axis) > slack;
         let below = |pose: &Pose| (pose.tip - self.pose.tip).dot(&pose.axis);
         let places = asked.iter().filter(|asked| !asked.left || !falls(&asked.pose));
         let by = places.map(|asked| below(&asked.pose)).fold(f64::INFINITY, f64::min);
@@ -399,12 +410,17 @@ impl RapidEnd {
     }
 
     fn on_the_line(&self, asked: &Pose, slack: f64, lean: f64) -> bool {
-        let way = self.pose.tip - asked.tip;
-        let along = way.dot(&asked.axis);
-        (self.pose.axis - asked.axis).norm() <= lean
-            && along >= -slack
-            && (way - asked.axis * along).norm() <= slack + lean * along
+        on_the_line(&self.pose, asked, slack, lean)
     }
+}
+
+/// The tool stands as at a place that is asked for, and on its own line through that, there or farther off.
+fn on_the_line(pose: &Pose, asked: &Pose, slack: f64, lean: f64) -> bool {
+    let way = pose.tip - asked.tip;
+    let along = way.dot(&asked.axis);
+    (pose.axis - asked.axis).norm() <= lean
+        && along >= -slack
+        && (way - asked.axis * along).norm() <= slack + lean * along
 }
 
 /// The least and the largest value of an axis at all places that are asked for.

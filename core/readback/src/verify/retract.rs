@@ -37,9 +37,14 @@ pub(super) fn lacks(machine: &Machine, joints: &Joints, slack: f64) -> Option<(u
 
 /// The tool is as far off the part as the machine file retracts it; nowhere, where that is off its own line alone.
 pub(super) fn is_retracted(machine: &Machine, joints: &Joints, slack: f64) -> bool {
+    drawn_back(machine).is_none() && lacks(machine, joints, slack).is_none()
+}
+
+/// How far off the part the tool is drawn back along its own line where the machine file has no more than that (`leave`
+/// without `then`), mm.
+pub(super) fn drawn_back(machine: &Machine) -> Option<f64> {
     let frame = &machine.frame;
-    let stays_on_line = frame.leave.is_some() && frame.retract.is_empty() && frame.aside.is_empty();
-    !stays_on_line && lacks(machine, joints, slack).is_none()
+    frame.leave.filter(|_| frame.retract.is_empty() && frame.aside.is_empty())
 }
 
 /// A way from one place to another at which the machine file has the tool retracted.

@@ -29,6 +29,8 @@ const CLASSES: &[&str] = &[
     "scara",
     "linear-delta",
     "hexapod",
+    "tricept",
+    "exechon",
 ];
 
 fn folder() -> TempDir {
@@ -77,6 +79,7 @@ fn every_class_passes_the_check_and_makes_a_program() {
         let kind = kind.replace("lathe-xz", "two-axis").replace("tangential-knife", "head C");
         let kind =
             kind.replace("robot-on-rail", "rotary axes at once").replace("hexapod", "leg J5");
+        let kind = kind.replace("tricept", "L3").replace("exechon", "qC");
         let kind = kind.replace("scara", "A carries B");
         let kind = kind.replace("four-axis-a", "rotary table A");
         let kind = kind.replace("four-axis-b", "rotary table B");
@@ -296,7 +299,8 @@ fn flags_are_used_or_refused_in_every_class() {
             let before = fs::read_to_string(&path).unwrap();
             fs::remove_file(&path).unwrap();
             // What a class has anyway changes nothing.
-            let kept = ["mill-turn", "hexapod"].contains(class) && flag == "--tcp";
+            let kept =
+                ["mill-turn", "hexapod", "tricept", "exechon"].contains(class) && flag == "--tcp";
             let value = if kept { "post" } else { value };
             let mut all = arguments.to_vec();
             all.extend([flag, value]);
@@ -355,4 +359,30 @@ fn every_dialect_passes_the_check() {
             }
         }
     }
+}
+
+/// A class whose law stands in formulas takes what the flags say into the library's file.
+#[test]
+fn a_class_of_the_library_takes_what_flags_say() {
+    let folder = folder();
+    let new =
+        ["new", "ours", "--class", "tricept", "--dialect", "siemens", "--travel", "X=-500:510"];
+    let more =
+        ["--max-feed", "A=5000", "--reversed", "C", "--tolerance", "0.03", "--title", "Ours"];
+    let run = post_in(folder.path(), &[&new[..], &more].concat(), "");
+    assert_eq!((run.code, run.err.as_str()), (0, ""));
+    let text = fs::read_to_string(folder.path().join("ours.toml")).unwrap();
+    for line in [
+        "name  = \"Ours\"",
+        "dialect = \"siemens\"",
+        "travel   = [-500, 510]",
+        "max_feed = 5000",
+        "reversed = true",
+        "tolerance = 0.03",
+    ] {
+        assert!(text.lines().any(|own| own == line), "{line}:\n{text}");
+    }
+    assert_eq!(text.matches("[-500, 510]").count(), 1, "{text}");
+    let gauge = post_in(folder.path(), &["new", "other", "--class", "exechon", "--gauge", "3"], "");
+    assert!(gauge.code == 1 && gauge.err.contains("exechon has no gauge line"), "{}", gauge.err);
 }

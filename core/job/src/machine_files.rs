@@ -18,6 +18,12 @@ use crate::tools;
 /// Names and texts of the machines built in.
 const BUILT_IN: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/machines.rs"));
 
+/// The text of a machine of the library, which is built in.
+pub fn of_library(name: &str) -> Option<&'static str> {
+    let mut known = BUILT_IN.iter();
+    known.find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
 /// Loads the machine `name` from the folders that the user `named`, the usual ones, or those built in, with
 /// `settings` over it.
 pub fn load(
@@ -195,8 +201,8 @@ fn find_reading(name: &str, folders: &[PathBuf], read: ReadText<'_>) -> Result<S
             return read(&path);
         }
     }
-    if let Some((name, text)) = BUILT_IN.iter().find(|(known, _)| *known == name) {
-        return Ok(Source { name: format!("{name}.toml (built in)"), text: (*text).to_owned() });
+    if let Some(text) = of_library(name) {
+        return Ok(Source { name: format!("{name}.toml (built in)"), text: text.to_owned() });
     }
     let known = names(folders);
     let meant = nearest(name, known.iter().map(|(name, _)| name.as_str()));

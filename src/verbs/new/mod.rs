@@ -1,5 +1,6 @@
 //! `post new`: writes a machine file to start from.
 
+mod of_library;
 mod questions;
 mod template;
 

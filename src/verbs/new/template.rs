@@ -6,7 +6,9 @@ use std::fmt::Write as _;
 use clap::ValueEnum;
 use post_machine::description::{OutputUnits, Tcp};
 
-use super::{AxisSetting, Choices};
+use post_job::machine_files;
+
+use super::{AxisSetting, Choices, of_library};
 
 /// How the rotary axes stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -51,6 +53,10 @@ pub enum Class {
     LinearDelta,
     /// Six struts between a frame and a platform; its words are X, Y, Z and the angles of the tool A and B.
     Hexapod,
+    /// Three struts that lead a tube in a universal joint, with a wrist of two axes on it.
+    Tricept,
+    /// A platform on three legs, two of which turn in one plane, with a wrist of two axes below it.
+    Exechon,
 }
 
 /// The seven lengths of an arm, as they are published for it, mm: their names and what they are, the arm stretched straight up.
@@ -208,6 +214,7 @@ impl Class {
             Self::RobotOnRail => "[w b Y A B C U V W (S) t]",
             Self::Scara => "[w b A B Z (S) t]",
             Self::Hexapod => "[w b X Y Z C B A (S) t]",
+            Self::Tricept | Self::Exechon => "[w b X Y Z C A (S) t]",
             Self::LinearDelta => "[w b X Y Z (S) t]",
         }
     }
@@ -290,6 +297,10 @@ impl Class {
                 platform_angle("B", "[0, 1, 0]", 20.0),
                 platform_angle("A", "[1, 0, 0]", 20.0),
             ],
+            Self::Tricept | Self::Exechon => vec![
+                platform_angle("C", "[0, 0, 1]", 360.0),
+                platform_angle("A", "[1, 0, 0]", 100.0),
+            ],
         }
     }
 
@@ -315,7 +326,7 @@ impl Class {
     /// Who keeps the tip, if nobody says so. The tool of a mill-turn is drawn across the part, and its length is put along Z;
     /// struts are no axes whose positions a program could say.
     pub fn usual_tcp(self) -> Tcp {
-        let keeps = matches!(self, Self::MillTurn | Self::Hexapod);
+        let keeps = matches!(self, Self::MillTurn | Self::Hexapod) || self.library().is_some();
         if keeps { Tcp::Control } else { Tcp::Post }
     }
 
@@ -326,14 +337,23 @@ impl Class {
 
     /// The height `gauge` stands in its file.
     pub fn has_gauge(self) -> bool {
-        !self.has_arm()
+        !self.has_arm() && self.library().is_none()
+    }
+
+    /// The machine of the library from whose file its own is made.
+    pub fn library(self) -> Option<&'static str> {
+        match self {
+            Self::Tricept => Some("tricept"),
+            Self::Exechon => Some("exechon"),
+            _ => None,
+        }
     }
 
     /// mm, the tip in cuts, if nobody says another.
     pub fn usual_tolerance(self) -> f64 {
         match self {
             Self::Robot | Self::RobotOnRail => 0.05,
-            Self::Scara | Self::TangentialKnife => 0.02,
+            Self::Scara | Self::TangentialKnife | Self::Tricept | Self::Exechon => 0.02,
             _ => 0.005,
         }
     }
@@ -379,6 +399,10 @@ impl Class {
 
 /// The whole file.
 pub fn write(choices: &Choices) -> String {
+    if let Some(name) = choices.class.library() {
+        let text = machine_files::of_library(name).unwrap_or_default();
+        return of_library::write(name, text, choices);
+    }
     let mut text = String::new();
     // Writing to a String cannot fail.
     let mut line = |said: &str, remark: &str| {
@@ -796,6 +820,6 @@ fn feed(choices: &Choices, axis: &str, usual: f64) -> f64 {
 }
 
 /// The last that was given.
-fn given<T: Copy>(all: &[AxisSetting<T>], axis: &str) -> Option<T> {
+pub(super) fn given<T: Copy>(all: &[AxisSetting<T>], axis: &str) -> Option<T> {
     all.iter().rev().find(|given| given.axis == axis).map(|given| given.value)
 }

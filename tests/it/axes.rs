@@ -6,6 +6,7 @@
 mod approach;
 mod choice;
 mod edge;
+mod erring;
 mod exclusive;
 mod few;
 mod heads;

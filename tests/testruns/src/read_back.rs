@@ -42,6 +42,39 @@ pub struct Axis {
     quill: bool,
     /// What its word multiplies it by: 2 of a diameter, of a machine of the library.
     factor: f64,
+    /// The sign of its word is the way to a place within one turn.
+    signed: bool,
+    /// Errors by where it stands, as the control shows it.
+    errors: Option<Errors>,
+}
+
+/// `[error.X]` with rows in the machine file, mm and mm/m.
+#[derive(Debug)]
+struct Errors {
+    /// Places, and displacement and turn there, mm and radians.
+    rows: Vec<(f64, [V; 2])>,
+    /// The point whose displacement they are.
+    point: V,
+    /// They act on the part's side of the axis.
+    before: bool,
+    /// The axis turns without end, and so do they.
+    endless: bool,
+}
+
+impl Errors {
+    fn motion(&self, place: f64) -> Isometry3<f64> {
+        let (first, motion) = self.rows[0];
+        let place = if self.endless { first + (place - first).rem_euclid(360.0) } else { place };
+        let mut rows = self.rows.clone();
+        rows.extend(self.endless.then_some((first + 360.0, motion)));
+        let after = rows.iter().position(|(at, _)| *at > place).unwrap_or(rows.len());
+        let [before, after] = [after.saturating_sub(1), after.min(rows.len() - 1)];
+        let ((from, one), (to, other)) = (rows[before], rows[after]);
+        let share = if to > from { (place - from) / (to - from) } else { 0.0 };
+        let [by, turn] = [0, 1].map(|of| one[of] + (other[of] - one[of]) * share);
+        let there = Translation3::from(self.point);
+        Translation3::from(by) * there * UnitQuaternion::from_scaled_axis(turn) * there.inverse()
+    }
 }
 
 /// A machine file with one of its heads.
@@ -115,6 +148,29 @@ impl Numbers<'_> {
     }
 }
 
+/// Rows of errors of an axis: `EXX` is the one along X of X, `ECX` the one about Z.
+fn error_rows(table: &Value, axis: &str) -> Vec<(f64, [V; 2])> {
+    let number =
+        |value: &Value| value.as_float().or(value.as_integer().map(|it| it as f64)).unwrap();
+    let names: Vec<&str> =
+        table["columns"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    let micrometres = table.get("units").and_then(Value::as_str) == Some("um");
+    let unit = if micrometres { 1e-3 } else { 1.0 };
+    let rows = table["rows"].as_array().unwrap().iter();
+    rows.map(|row| {
+        let row: Vec<f64> = row.as_array().unwrap().iter().map(number).collect();
+        let mut motion = [V::zeros(); 2];
+        for (name, value) in names.iter().zip(&row).skip(1) {
+            let letter = name.strip_prefix('E').unwrap().strip_suffix(axis).unwrap();
+            let part = "XYZABC".find(letter).unwrap();
+            let value = value * unit;
+            motion[part / 3][part % 3] = if part > 2 { value * 1e-3 } else { value };
+        }
+        (row[0], motion)
+    })
+    .collect()
+}
+
 impl Model {
     /// A machine of the library, with `head` if it has more than one.
     pub fn new(machine: &str, head: Option<&str>) -> Self {
@@ -135,6 +191,11 @@ impl Model {
         let section = |name: &str| table.get(name).and_then(Value::as_table);
         let numbers = Numbers { parameters: section("parameters") };
         let chain = table["chain"].as_str().unwrap();
+        let bed = chain.split_whitespace().position(|link| link.starts_with('b'));
+        let carrier = |name: &str| {
+            let links = chain.split_whitespace();
+            links.map(|link| link.trim_end_matches('\'')).position(|link| link == name) < bed
+        };
         let names = chain
             .trim_matches(['[', ']'])
             .split_whitespace()
@@ -151,7 +212,18 @@ impl Model {
                 }
                 let sense = if flag("reversed") { -1.0 } else { 1.0 };
                 let direction = get("rotary").or(get("linear")).unwrap();
+                let rotary = get("rotary").is_some();
+                let own_point = if rotary { get("point") } else { table["tool"].get("gauge") };
+                let errors =
+                    section("error").and_then(|errors| errors.get(name)).map(|own| Errors {
+                        rows: error_rows(own, name),
+                        point: numbers.vector(own.get("point").or(own_point), [0.0; 3]),
+                        before: carrier(name) != rotary,
+                        endless: rotary && get("travel").is_none(),
+                    });
                 Axis {
+                    errors,
+                    signed: get("way").and_then(Value::as_str) == Some("sign"),
                     name: name.to_owned(),
                     rotary: get("rotary").is_some(),
                     direction: sense * numbers.vector(Some(direction), [0.0; 3]).normalize(),
@@ -217,10 +289,19 @@ impl Model {
             directions.flat_map(|way| [way.x, way.y, way.z]),
         );
         let wanted = DMatrix::from_column_slice(3, 1, (-home).as_slice());
-        let solved = directions.pseudo_inverse(1e-9).unwrap() * wanted;
+        let solved = directions.clone().pseudo_inverse(1e-9).unwrap() * wanted;
         let mut offset = vec![0.0; self.axes.len()];
-        for (row, place) in linear.into_iter().enumerate() {
-            offset[place] = solved[row];
+        for (row, place) in linear.iter().enumerate() {
+            offset[*place] = solved[row];
+        }
+        if self.axes.iter().any(|axis| axis.errors.is_some()) {
+            let inverse = directions.pseudo_inverse(1e-9).unwrap();
+            for _ in 0..6 {
+                let stands: Vec<f64> = shown.iter().zip(&offset).map(|(a, b)| a + b).collect();
+                let off = -self.reach(&stands, length).tip;
+                let more = &inverse * DMatrix::from_column_slice(3, 1, off.as_slice());
+                linear.iter().enumerate().for_each(|(row, place)| offset[*place] += more[row]);
+            }
         }
         offset
     }
@@ -228,8 +309,12 @@ impl Model {
     /// The tool where the axes stand at `values`, as the control shows them, mm and degrees.
     pub fn reach(&self, values: &[f64], length: f64) -> Pose {
         let mut motion = Isometry3::identity();
-        for (axis, value) in self.axes.iter().zip(values) {
-            let value = value - axis.zero;
+        for (axis, shown) in self.axes.iter().zip(values) {
+            let value = shown - axis.zero;
+            let errors = axis.errors.as_ref();
+            let [before, behind] =
+                [true, false].map(|side| errors.filter(|own| own.before == side));
+            motion *= before.map_or_else(Isometry3::identity, |own| own.motion(*shown));
             if axis.rotary {
                 let direction = Unit::new_unchecked(axis.direction);
                 let turn = UnitQuaternion::from_axis_angle(&direction, value.to_radians());
@@ -238,6 +323,7 @@ impl Model {
             } else {
                 motion *= Translation3::from(axis.direction * value);
             }
+            motion *= behind.map_or_else(Isometry3::identity, |own| own.motion(*shown));
         }
         Pose {
             tip: motion * Point3::from(self.home(length)) - Point3::from(self.mount),
@@ -250,6 +336,7 @@ impl Model {
     fn values(&self, words: &[f64], length: f64) -> Vec<f64> {
         let offset = self.work_offset(length);
         let value = |((axis, word), offset): ((&Axis, &f64), f64)| match axis.rotary {
+            true if axis.signed => word.abs(),
             true => *word,
             false => word * self.unit / axis.factor + offset + axis.zero,
         };

@@ -417,7 +417,6 @@ impl Builder<'_> {
         // With a number that has none, or a direction that is none, its solver would search without end.
         if self.faults.is_empty() {
             self.check_chain(&machine, file.chain.span());
-            self.check_errors(&machine, file.error.keys().next().map_or(0..0, Spanned::span));
         }
         if self.faults.is_empty() {
             let modes = [self.face(&file.mode, &machine), self.wrap(&file.mode, &machine)];
@@ -425,6 +424,7 @@ impl Builder<'_> {
         }
         Some(machine)
     }
+            self.check_errors(&machine, file.error.keys().next().map_or(0..0, Spanned::span));
 
     /// The options of the dialect, taken out of those of all; what is wrong with the control on these axes.
     fn control_options(

@@ -11,7 +11,8 @@ use toml::Spanned;
 
 use super::bounds::Bounds;
 use super::build::Builder;
-use super::error_rows::{ErrorRows, MM_PER_M, RowFault, measured, parts};
+use super::error_rows::{ErrorRows, MM_PER_M, measured, parts};
+use super::error_run;
 use super::keys::axes_are;
 use super::limits::MOST_ERROR_ROWS;
 use super::quantity::KeyedNumber;
@@ -33,7 +34,9 @@ keys! {
         /// What was measured, a row a place of the axis, rising: errors are interpolated linearly between, and are those of
         /// the first and last row beyond.
         rows: Vec<Spanned<Vec<KeyedNumber>>>,
-        /// A file of comma-separated values in the place of both: the columns in its first line, behind it a line a row.
+        /// A file of comma-separated values in the place of both, as a measuring run writes it: lines about the run, then the
+        /// columns, units behind their names (`EXX [µm]`, `EAX (arcsec)`), then a line a row, rising or falling. Decimals
+        /// may have commas where semicolons keep cells apart. Of places that are come to from both sides the mean counts.
         file: Option<Spanned<String>>,
         /// Units of the errors.
         units: ErrorUnits = Bounds { default: Some("\"mm\""), ..Bounds::ANY },
@@ -88,38 +91,10 @@ impl Machine {
     pub fn take_errors(&mut self, table: &ErrorTable, text: &str) -> Result<(), Box<Diagnostic>> {
         let axis = &self.axes[table.errors.joint];
         let name = table.file.display().to_string();
-        let mut lines = Vec::new();
-        for (line, text) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
-            let text = text.trim();
-            if !text.is_empty() && !text.starts_with('#') {
-                lines.push((line, text.split([',', ';', '\t']).map(str::trim).collect::<Vec<_>>()));
-            }
-        }
-        let fault = |line: u64, message: String, help: &str| {
-            let place = SourcePlace::new(&name, line, "", 0..0);
-            Diagnostic::error(CODE, message).at(Some(place)).help(help).boxed()
-        };
-        let told = |fault_of: RowFault| {
-            let row = fault_of.row.map_or(0, |row| row + 1);
-            let line = lines.get(row).map_or(1, |(line, _)| *line);
-            fault(line, fault_of.message, &fault_of.help)
-        };
-        let heads = lines.first().map(|(_, heads)| heads.as_slice()).unwrap_or_default();
-        let parts = parts(heads, axis).map_err(told)?;
-        let mut rows = Vec::new();
-        for (line, fields) in lines.iter().skip(1).take(MOST_ERROR_ROWS) {
-            let numbers: Option<Vec<f64>> = fields
-                .iter()
-                .map(|field| field.parse().ok().filter(|number: &f64| number.is_finite()))
-                .collect();
-            let wrong = || {
-                let help =
-                    "numbers with points, commas, semicolons or tabs between, a line a place";
-                fault(*line, "this line does not consist of numbers".to_owned(), help)
-            };
-            rows.push(numbers.ok_or_else(wrong)?);
-        }
-        let rows = measured(rows.into_iter(), &parts, axis, table.units).map_err(told)?;
+        let rows = error_run::read(text, axis, table.units).map_err(|fault| {
+            let place = SourcePlace::new(&name, fault.line, "", 0..0);
+            Diagnostic::error(CODE, fault.message).at(Some(place)).help(fault.help).boxed()
+        })?;
         let ErrorRows { places, motions } = rows;
         let mut all = self.errors.to_vec();
         all.push(AxisErrors { places, motions, ..table.errors.clone() });
@@ -255,11 +230,10 @@ impl Builder<'_> {
             let help = "tcp = \"post\" writes axis positions with the errors taken out; or leave [error] out, for the control's own volumetric compensation";
             self.fault(CODE, span.clone(), message.to_owned(), help);
         }
-        let placed =
-            machine.solver(0.0).is_ok_and(|solver| solver.closed_form() && !solver.planar());
-        if !placed {
-            let message = "[error] is for chains whose three linear axes place the tip".to_owned();
-            self.fault(CODE, span, message, "leave [error] out");
+        if machine.has_modes() {
+            let message = "[error] does not reach what the control interpolates by itself in [mode.face] and [mode.wrap]".to_owned();
+            let help = "leave [mode] out, so that each block is axis positions with the errors taken out; or leave [error] out";
+            self.fault(CODE, span, message, help);
         }
     }
 }

@@ -12,6 +12,7 @@ mod dependent;
 mod drives;
 mod echoes;
 mod error_rows;
+mod error_run;
 mod errors;
 mod file;
 mod formulas;

@@ -10,6 +10,9 @@ use nalgebra::Vector3;
 
 use super::chain::{Chain, Joint, Joints, Pose};
 
+/// Turns of 20 mm/m, the largest there are, come to no more than so many times their sum.
+const SECOND_ORDER: f64 = 1.02;
+
 /// Displacement, mm, and turn, radians, along and about X, Y and Z of the machine frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SmallMotion {
@@ -160,12 +163,13 @@ impl Chain {
         self.errors().iter().find(|errors| errors.joint == joint)
     }
 
-    /// By how much errors turn the tool axis at most, radians: rotary axes are put as if there were none.
+    /// By how much errors turn the tool axis at most, radians, what one turn makes of another with it: rotary axes are put as
+    /// if there were none.
     pub(super) fn largest_error_turn(&self) -> f64 {
         let of = |errors: &AxisErrors| {
             errors.motions.iter().map(|motion| motion.turn.norm()).fold(0.0, f64::max)
         };
-        self.errors().iter().map(of).sum()
+        SECOND_ORDER * self.errors().iter().map(of).sum::<f64>()
     }
 
     /// By how much errors move the tip and turn the tool axis at most, off the line between those at the ends, while the

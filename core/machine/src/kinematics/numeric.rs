@@ -15,6 +15,10 @@ const ARM: f64 = 300.0;
 /// Steps from one start; quadratic convergence needs a handful.
 pub(super) const STEPS: usize = 60;
 
+/// Steps in which linear axes come to a tip with their errors: each leaves what these change by over its length, less than a
+/// fiftieth.
+const ERRING_STEPS: usize = 8;
+
 /// Residuals below this are taken as none, mm.
 const SOLVED: f64 = 1e-10;
 
@@ -173,11 +177,18 @@ pub(super) fn spread(free: &[usize], held: &Joints, share: f64) -> Joints {
 }
 
 /// Puts the linear joints of `linear` (up to three) where the tip comes closest to `tip`: least squares,
-/// exact in one step since the tip is linear in them.
+/// exact in one step since the tip is linear in them, in a few where their errors bend its way.
 pub(super) fn approach(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joints: &mut Joints) {
     if linear.is_empty() {
         return;
     }
+    let steps = if chain.errors().is_empty() { 1 } else { ERRING_STEPS };
+    for _ in 0..steps {
+        approach_by_a_step(chain, linear, tip, joints);
+    }
+}
+
+fn approach_by_a_step(chain: &Chain, linear: &[usize], tip: Vector3<f64>, joints: &mut Joints) {
     let from = chain.forward(joints).tip;
     let mut columns = [Vector3::zeros(); MAX_AXES];
     for (column, joint) in columns.iter_mut().zip(linear) {
@@ -245,9 +256,14 @@ impl<const R: usize> Stand<R> {
             }
             origin = point + turn(origin - point, k, sine, cosine);
         }
-        let tip = origin + out(&frame, chain.tip());
-        let axis = out(&frame, chain.axis());
-        let edge = chain.edge().map(|edge| out(&frame, edge));
+        let mut tip = origin + out(&frame, chain.tip());
+        let mut axis = out(&frame, chain.axis());
+        let mut edge = chain.edge().map(|edge| out(&frame, edge));
+        if !chain.errors().is_empty() {
+            // What they change with the joints is too little to be counted in a step.
+            let stands = chain.forward(joints);
+            (tip, axis, edge) = (stands.tip, stands.axis, edge.map(|_| stands.edge));
+        }
         let mut residual = [0.0; R];
         put(&mut residual, 0, tip - pose.tip);
         put(&mut residual, 3, (axis - pose.axis) * ARM);

@@ -26,6 +26,13 @@ const LEANS: f64 = 0.9;
 /// Closer to where its ways meet than this share of what the tip may miss, mm of mm, the carrier stands as it stood.
 const MEETS: f64 = 0.1;
 
+/// Errors of axes displace a tip by no more than this, mm: what lies farther across the plane is no error of theirs.
+const LARGEST_ERROR: f64 = 10.0;
+
+/// Steps in which errors of axes are taken out, and what is left of them, mm and radians.
+const MOST_STEPS: usize = 12;
+const PLACED: f64 = 1e-10;
+
 /// How two linear axes and up to two rotary ones reach a pose.
 #[derive(Clone, Debug)]
 pub(super) struct Planar {
@@ -35,6 +42,8 @@ pub(super) struct Planar {
     linear: [usize; 2],
     /// The free rotary joint in front of both linear ones; none where no rotary joint is free.
     carrier: Option<usize>,
+    /// The chain without the errors of its axes, where it has any.
+    nominal: Option<Box<Chain>>,
 }
 
 /// How far a solution may miss the pose.
@@ -125,7 +134,9 @@ impl Planar {
         let directions = linear.map(|joint| chain.joints()[joint].direction);
         let (orientation, idle) = Orientation::new(chain, rotary, held).ok()?;
         let spans = directions[0].cross(&directions[1]).norm() > FLAT;
-        spans.then_some(Self { orientation, idle, linear, carrier })
+        let without = || Box::new(chain.clone().with_errors(&Vec::new().into()));
+        let nominal = (!chain.errors().is_empty()).then(without);
+        spans.then_some(Self { orientation, idle, linear, carrier, nominal })
     }
 
     /// All solutions; joints that turn nothing stand as in `last`. Angles lie in -π to π.
@@ -133,6 +144,69 @@ impl Planar {
     /// # Errors
     /// By how much the nearest misses.
     pub(super) fn solutions(
+        &self,
+        chain: &Chain,
+        held: &Joints,
+        pose: &Pose,
+        last: &Joints,
+        allowed: AllowedMiss,
+    ) -> Result<Vec<PlanarSolution>, Unreachable> {
+        match &self.nominal {
+            None => self.exact_solutions(chain, held, pose, last, allowed),
+            Some(nominal) => self.erring_solutions([chain, nominal], held, pose, last, allowed),
+        }
+    }
+
+    /// [`Planar::solutions`] with errors of axes: a fixed point for each. A step aims beside the pose by what the one before
+    /// missed it by; what lies across the plane the carrier takes away, or nothing does, and it is told.
+    #[cold]
+    fn erring_solutions(
+        &self,
+        [chain, nominal]: [&Chain; 2],
+        held: &Joints,
+        pose: &Pose,
+        last: &Joints,
+        allowed: AllowedMiss,
+    ) -> Result<Vec<PlanarSolution>, Unreachable> {
+        // What errors displace is no miss of what the axes aim at.
+        let widened = AllowedMiss {
+            tip: allowed.tip + LARGEST_ERROR,
+            axis: allowed.axis + chain.largest_error_turn(),
+        };
+        let mut found = Vec::with_capacity(2);
+        let mut fault = Unreachable::Linear;
+        for mut way in self.exact_solutions(nominal, held, pose, last, widened)? {
+            let mut aim = *pose;
+            for _ in 0..MOST_STEPS {
+                let miss = pose.tip - chain.forward(&way.joints).tip;
+                aim.tip += miss;
+                let ways = self.exact_solutions(nominal, held, &aim, last, widened);
+                let near = |other: &PlanarSolution| {
+                    turned(chain, &unwound(chain, &other.joints, &way.joints), &way.joints)
+                };
+                let next =
+                    ways.unwrap_or_default().into_iter().min_by(|a, b| near(a).total_cmp(&near(b)));
+                let Some(next) = next else {
+                    break;
+                };
+                let moved =
+                    next.joints.iter().zip(&way.joints).any(|(a, b)| libm::fabs(a - b) > PLACED);
+                way = next;
+                if !moved || miss.norm() < PLACED {
+                    break;
+                }
+            }
+            let axis = allowed.axis + chain.largest_error_turn();
+            match missed(chain, pose, &way.joints, AllowedMiss { axis, ..allowed }) {
+                Some(unreachable) => fault = unreachable,
+                None => found.push(way),
+            }
+        }
+        if found.is_empty() { Err(fault) } else { Ok(found) }
+    }
+
+    /// [`Planar::solutions`] without errors of axes.
+    fn exact_solutions(
         &self,
         chain: &Chain,
         held: &Joints,

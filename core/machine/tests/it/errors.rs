@@ -268,7 +268,7 @@ fn a_table_from_a_file_is_the_table_in_the_machine_file() {
     for (text, told) in [
         ("", "no rows"),
         ("X,EYX\n", "no rows"),
-        ("X,EYX\n0,1\n0,2\n", "do not rise"),
+        ("X,EYX\n0,1\n0,2000\n", "two readings of X at 0 are 1.999 mm or mm/m apart"),
         ("X,EYX\n0,secret\n", "does not consist of numbers"),
         ("X,EYX\n0,1,2\n", "3 numbers, and there are 2 columns"),
         ("X,EYX\n0,9000\n", "9.000 mm"),
@@ -277,6 +277,53 @@ fn a_table_from_a_file_is_the_table_in_the_machine_file() {
         let fault = filed.take_errors(&table, text).unwrap_err();
         assert!(fault.message.contains(told), "{text:?}: {}", fault.message);
         assert!(!fault.message.contains("secret"));
+    }
+}
+
+/// Files as instruments write them: a head about the run, units, commas for points, falling places, both directions.
+#[test]
+fn a_measuring_run_is_read_as_its_instrument_writes_it() {
+    let inline = mill("columns = [\"X\", \"EXX\", \"EBX\"]\nrows = [[0, 0.001, 0], [250, -0.004, 0.01], [500, 0.007, 0.02]]").unwrap();
+    let same = |text: &str| {
+        let mut filed = mill("file = \"x.csv\"").unwrap();
+        let table = filed.error_tables.pop().unwrap();
+        filed.take_errors(&table, text).map_err(|fault| fault.message)?;
+        let [own, wanted] = [&filed.errors[0], &inline.errors[0]];
+        assert_eq!(own.places, wanted.places, "{text}");
+        for (own, wanted) in own.motions.iter().zip(&wanted.motions) {
+            let off =
+                (own.displacement - wanted.displacement).norm() + (own.turn - wanted.turn).norm();
+            assert!(off < 1e-12, "{text}: {own:?}, {wanted:?}");
+        }
+        Ok::<(), String>(())
+    };
+    for text in [
+        "X,EXX,EBX\n500,0.007,0.02\n250,-0.004,0.01\n0,0.001,0\n",
+        "Laser run;12.05.2026\nOperator;N. N.\n\nX [mm];EXX [µm];EBX [µm/m]\n0,000;1,0;0\n250,000;-4,0;10,0\n500,000;7,0;20;\n",
+        "X\tEXX (μm)\tEBX (µrad)\n0\t1\t0\n250\t-4\t10\n500\t7\t20\n",
+        "X in m,EXX/um,EBX/mrad\n0,1,0\n0.25,-4,0.01\n0.5,7,0.02\n",
+        // Up and down: the mean; the places of the way down in any order of runs, and one place a little beside.
+        "X,EXX,EBX\n0,0.000,0\n250,-0.006,0.01\n500,0.006,0.02\n500,0.008,0.02\n250.0004,-0.002,0.01\n0,0.002,0\n",
+        // Two runs up and one down: what was found from either side counts alike.
+        "X,EXX,EBX\n0,0,0\n250,-0.006,0.01\n500,0.006,0.02\n0,0,0\n250,-0.006,0.01\n500,0.006,0.02\n500,0.008,0.02\n250,-0.002,0.01\n0,0.002,0\n",
+    ] {
+        same(text).unwrap_or_else(|fault| panic!("{text}: {fault}"));
+    }
+    let arcsec = "X,EXX,EBX [arcsec]\n0,0.001,0\n250,-0.004,2.0626480624709636\n500,0.007,4.125296124941927\n";
+    same(arcsec).unwrap();
+    for (text, told) in [
+        ("X,EXX [arcsec],EBX\n0,1,0\n", "behind EXX is no unit of it"),
+        ("X,EXX,EBX [µm]\n0,1,0\n", "behind EBX is no unit of it"),
+        ("X [deg],EXX,EBX\n0,1,0\n", "behind X is no unit of it"),
+        ("X,EXX,EBX\n0,0,0\n250,0,0\n500,0,0\n250,0,0\n0,0,0\n", "to 500 from one alone"),
+        // 30 for 300.
+        ("X,EXX,EBX\n0,0,0\n250,0,0\n30,0,0\n500,0,0\n", "from one alone"),
+        ("run;of May\n1;2\n", "`run` is no column"),
+        // A semicolon keeps cells apart: a comma is the point of one number.
+        ("X;EXX\n0;1,000,0\n", "does not consist of numbers"),
+    ] {
+        let fault = same(text).unwrap_err();
+        assert!(fault.contains(told), "{text}: {fault}");
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use post_host::{
     Finder, LinkedPlugin, OpenedDialect, OpenedModel, Plugin, PluginFault, ProgramAhead,
-    ProgramSetup, ProgramTool, ProgramWord, Reason,
+    ProgramSetup, ProgramTool, ProgramWord, Reason, of_the_source,
 };
 use post_machine::axis_words;
 use post_machine::description::{GivenOption, Machine, OutputUnits, Tcp};
@@ -166,7 +166,7 @@ pub fn dialect_knowing(
             .map(|place| {
                 let axis = &machine.axes[place];
                 ProgramWord {
-                    name: axis.name.clone(),
+                    name: axis.word().to_owned(),
                     rotary: axis.joint.rotary,
                     wrapped: axis.range.is_some(),
                     signed: axis.signed,
@@ -257,7 +257,7 @@ fn refused_axis(machine: &Machine, fault: &PluginFault) -> Option<SourcePlace> {
         return None;
     };
     let (name, _) = message.strip_prefix("axis ")?.split_once(':')?;
-    let axis = machine.axes.iter().find(|axis| axis.name == name)?;
+    let axis = machine.axes.iter().find(|axis| axis.word() == name)?;
     axis.place.clone()
 }
 
@@ -286,7 +286,8 @@ pub fn not_built_in(dialect: &str) -> Option<Diagnostic> {
     let message = format!(
         "the dialect {dialect} is not built in: name the folder of its plugin with --plugins"
     );
-    let help = diagnostic::meant(dialect, "built in are", &names);
+    let help = of_the_source(dialect)
+        .unwrap_or_else(|| diagnostic::meant(dialect, "built in are", &names));
     Some(Diagnostic::warning("plugin", message).help(help))
 }
 

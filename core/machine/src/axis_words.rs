@@ -72,9 +72,9 @@ const ORDER: &str = "XYZUVWABC";
 pub fn order(machine: &Machine) -> Vec<usize> {
     let mut places: Vec<usize> = (0..machine.axes.len()).collect();
     places.sort_by_key(|place| {
-        let name = &machine.axes[*place].name;
-        let letter = name.chars().next().and_then(|letter| ORDER.find(letter));
-        (letter.unwrap_or(ORDER.len()), name.clone())
+        let word = machine.axes[*place].word();
+        let letter = word.chars().next().and_then(|letter| ORDER.find(letter));
+        (letter.unwrap_or(ORDER.len()), word.to_owned())
     });
     places
 }
@@ -107,8 +107,8 @@ pub fn depth(machine: &Machine) -> Option<usize> {
 }
 
 /// The coordinate of the part frame that a linear word means where the control keeps the tip.
-pub fn coordinate(name: &str) -> usize {
-    match name {
+pub fn coordinate(word: &str) -> usize {
+    match word {
         "X" => 0,
         "Y" => 1,
         _ => 2,
@@ -155,7 +155,7 @@ pub fn work_offset(machine: &Machine) -> Option<Vec<(&str, f64)>> {
     let zero = work_zero(&solver, axes.map(|(joint, axis)| (joint, axis.zero)))?;
     let shown = |joint: usize| {
         let shown = zero[joint] + machine.axes[joint].zero;
-        (machine.axes[joint].name.as_str(), shown * own_factor(machine, joint))
+        (machine.axes[joint].word(), shown * own_factor(machine, joint))
     };
     let linear = order(machine).into_iter().filter(|joint| !machine.axes[*joint].joint.rotary);
     Some(linear.map(shown).collect())
@@ -176,7 +176,7 @@ impl AxisWords {
                     joint,
                     reading: axis.zero,
                     turn_from: axis.range.map(|[least, _]| least / unit),
-                    coordinate: coordinate(&axis.name),
+                    coordinate: coordinate(axis.word()),
                     unit,
                     per_unit: 1.0 / unit,
                     scale,
@@ -186,7 +186,7 @@ impl AxisWords {
         );
         let (rotary, linear): (Vec<Word>, Vec<Word>) =
             words.partition(|word| machine.axes[word.joint].joint.rotary);
-        let name = |word: &Word| machine.axes[word.joint].name.as_str();
+        let name = |word: &Word| machine.axes[word.joint].word();
         let kept = machine.control.tcp == Tcp::Control;
         let (linear, standing): (Vec<Word>, Vec<Word>) =
             linear.into_iter().partition(|word| !kept || TIP_WORDS.contains(&name(word)));

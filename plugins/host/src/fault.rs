@@ -97,6 +97,17 @@ pub enum Reason {
     },
 }
 
+/// Plugins whose source comes with that of `post`, and which are not linked in.
+const OF_THE_SOURCE: [&str; 3] = ["krl", "rapid", "urscript"];
+
+/// How to come by a plugin whose source comes with that of `post`; none of others.
+pub fn of_the_source(plugin: &str) -> Option<String> {
+    let own = OF_THE_SOURCE.contains(&plugin);
+    own.then(|| {
+        format!("its source comes with that of post: cargo build --release -p post-{plugin} makes the plugin there, and --plugins target/release finds it")
+    })
+}
+
 /// An option that does not fit what the plugin declares.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OptionFault {
@@ -115,7 +126,11 @@ impl PluginFault {
     pub fn help(&self) -> String {
         match &self.reason {
             Reason::NotFound { tried, known } => {
-                let mut help = format!("there are {}", known.join(", "));
+                let mut help = of_the_source(&self.plugin).unwrap_or_default();
+                if !help.is_empty() {
+                    help.push_str("; ");
+                }
+                help.push_str(&format!("there are {}", known.join(", ")));
                 for path in tried {
                     help.push_str(&format!("; looked for {}", path.display()));
                 }

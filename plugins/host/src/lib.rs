@@ -41,7 +41,7 @@ mod working_folder;
 #[cfg(unix)]
 pub use crash::{delete_on_crash, keep_on_crash, watch_for_crash};
 pub use dialect::OpenedDialect;
-pub use fault::{OptionFault, PluginFault, Reason};
+pub use fault::{OptionFault, PluginFault, Reason, of_the_source};
 pub use finder::{Finder, ListedPlugin};
 pub use isolation::{Isolation, Limits, serve_if_asked};
 pub use leave::{ExitWatch, leave, leave_at_once, watch_for_exit};

@@ -118,7 +118,7 @@ impl<'a> Gauges<'a> {
     ) -> Self {
         let programmed = axes.iter().map(|place| {
             let axis = &machine.axes[*place];
-            let coordinate = ["X", "Y", "Z"].iter().position(|name| axis.name == *name);
+            let coordinate = ["X", "Y", "Z"].iter().position(|name| axis.word() == *name);
             let limited = machine.motion.limits == LimitsActOn::Programmed && !axis.joint.rotary;
             coordinate.filter(|_| limited)
         });

@@ -4,7 +4,8 @@ use post_grammar::SyncMark;
 
 use crate::description::Machine;
 
-/// A sentence for each word whose sign is a way, and how the channel waits for others.
+/// A sentence for each word whose sign is a way, and which slides have the words of the tip and other names, and how the
+/// channel waits for others.
 pub(super) fn told(machine: &Machine) -> Vec<String> {
     let signed = machine.axes.iter().filter(|axis| axis.signed);
     let mut all: Vec<String> = signed
@@ -13,6 +14,14 @@ pub(super) fn told(machine: &Machine) -> Vec<String> {
             format!("{name}-90 turns to 90° counting down, {name}90 counting up, {name}-360 to 0° counting down")
         })
         .collect();
+    let renamed = machine.axes.iter().filter_map(|axis| {
+        let word = axis.tip_word?;
+        Some(format!(
+            "{word} is the word of the slide {} and, while the control keeps it, of the tip",
+            axis.name
+        ))
+    });
+    all.extend(renamed);
     let Some(wait) = &machine.wait else {
         return all;
     };

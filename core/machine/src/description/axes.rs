@@ -181,6 +181,7 @@ impl Builder<'_> {
         let way = self.way(name, axis, zero, range);
         Some(Axis {
             name: name.to_owned(),
+            tip_word: None,
             place: self.sources.place(spanned.span()),
             carries_part,
             joint,

@@ -24,7 +24,7 @@ use super::table::KeyedValue;
 use super::{
     AccuracyRules, Arcs, Axis, ControlPoint, ControlRules, Frame, GivenOption, Head, Machine,
     Profile, ProgramRules, SmoothingRules, SpindleSpeeds, TIP_WORDS, UnusedOptions, WordRule,
-    linear_names,
+    linear_words, tip_words,
 };
 use crate::diagnostic::{Diagnostic, Short, SourcePlace};
 
@@ -346,6 +346,9 @@ impl Builder<'_> {
         let rewind = file.rewind.as_ref().and_then(|rewind| self.rewind(rewind));
         let tools = self.tool_lengths(&file.tools);
         let tool_table = self.tool_table(&file.tools.keys);
+        if file.control.get_ref().tcp == Some(Tcp::Control) {
+            tip_words::give(&mut axes);
+        }
         let options = self.control_options(file, &axes, &mut control_options);
         let mut own = self.axis_free_rules(file, &mut model_options);
         if along.is_some() && file.accuracy.rapid_tolerance.is_none() {
@@ -421,10 +424,10 @@ impl Builder<'_> {
         if self.faults.is_empty() {
             let modes = [self.face(&file.mode, &machine), self.wrap(&file.mode, &machine)];
             machine.heads.extend(modes.into_iter().flatten());
+            self.check_errors(&machine, file.error.keys().next().map_or(0..0, Spanned::span));
         }
         Some(machine)
     }
-            self.check_errors(&machine, file.error.keys().next().map_or(0..0, Spanned::span));
 
     /// The options of the dialect, taken out of those of all; what is wrong with the control on these axes.
     fn control_options(
@@ -628,11 +631,10 @@ impl Builder<'_> {
 
     /// Where the control keeps the tip, the linear words are its coordinates.
     fn check_tip_words(&mut self, axes: &[Axis], span: Range<usize>) {
-        let linear = linear_names(axes);
+        let linear = linear_words(axes);
         // Beside the three another may stand, with a word of its own.
         let stands = |axis: &&Axis| !axis.joint.rotary && axis.indexed.is_some();
-        let standing: BTreeSet<&str> =
-            axes.iter().filter(stands).map(|axis| axis.name.as_str()).collect();
+        let standing: BTreeSet<&str> = axes.iter().filter(stands).map(Axis::word).collect();
         let moving: BTreeSet<&str> = linear.difference(&standing).copied().collect();
         if moving != BTreeSet::from(TIP_WORDS) && linear != BTreeSet::from(TIP_WORDS) {
             let words = "with tcp = \"control\" the linear words are the tip's X, Y and Z";
@@ -650,7 +652,7 @@ impl Builder<'_> {
             };
             self.fault("machine-tcp", span.clone(), message, help);
         }
-        let held = |axis: &&Axis| stands(axis) && TIP_WORDS.contains(&axis.name.as_str());
+        let held = |axis: &&Axis| stands(axis) && TIP_WORDS.contains(&axis.word());
         if let Some(axis) = axes.iter().find(held) {
             let message = format!(
                 "with tcp = \"control\" the control moves all linear axes, and {} stands between cuts (indexed)",

@@ -13,6 +13,8 @@ pub(super) fn own(
     sources: &MachineSources,
 ) -> Vec<Diagnostic> {
     let tables: Vec<_> = hiding.iter().map(|fault| sources.table_of(fault)).collect();
+    // A machine file that extends another, or a setting, says a key of a table whose other keys stand there.
+    let names: Vec<&str> = hiding.iter().filter_map(|fault| sources.table_name(fault)).collect();
     // A parameter may be missing, so that an expression that names one says nothing.
     let parameters = tables.iter().flatten();
     let mut parameters = parameters.filter(|(_, _, header)| header.contains("parameters"));
@@ -25,7 +27,15 @@ pub(super) fn own(
             "machine-expression" => lacks_parameters,
             _ => false,
         };
-        in_a_table && !echoes && !tables.contains(&table)
+        let name = sources.table_name(fault);
+        let layered = name.is_some_and(|name| names.iter().any(|hiding| is_within(hiding, name)));
+        in_a_table && !echoes && !layered && !tables.contains(&table)
     });
     own.collect()
+}
+
+/// The table `name` is `outer`, or one of its own: `axis.C` of `axis`.
+fn is_within(name: &str, outer: &str) -> bool {
+    let rest = name.strip_prefix(outer);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }

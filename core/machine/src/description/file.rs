@@ -539,8 +539,6 @@ words! {
         Vector "vector",
         /// How the tool as a whole stands, in straight moves: turned about its Z, then its new Y, then its new X, degrees.
         AbcZyx "abc-zyx",
-        /// The same by turns about X, then Y, then Z of the frame that stand, degrees.
-        Wpr "wpr",
         /// The same as a quaternion.
         Quaternion "quaternion",
         /// The same as the direction that the tool has been turned about, as long as the turn, radians.

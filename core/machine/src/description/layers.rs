@@ -249,6 +249,17 @@ impl MachineSources {
         Some((&source.name, number, text))
     }
 
+    /// The name of the table that a finding stands in: `axis.C`, by the header above it or in the key of a setting; none
+    /// above all tables.
+    pub(crate) fn table_name<'f>(&'f self, finding: &'f Diagnostic) -> Option<&'f str> {
+        if let Some((_, _, header)) = self.table_of(finding) {
+            let name = header.trim().strip_prefix('[')?.split_once(']')?.0.trim();
+            return Some(name).filter(|name| !name.is_empty() && !name.starts_with('['));
+        }
+        let (key, _) = finding.place.as_ref()?.text.split_once('=')?;
+        Some(key.trim().rsplit_once('.')?.0)
+    }
+
     /// The file that a span stands in, and where there; none in a setting.
     pub(crate) fn local(&self, span: Range<usize>) -> Option<(&str, Range<usize>)> {
         let files = &self.sources[..self.files];

@@ -43,6 +43,7 @@ mod solids;
 mod spindle;
 mod stock;
 pub(crate) mod table;
+mod tip_words;
 mod tools;
 mod turned;
 mod wait;
@@ -109,10 +110,9 @@ const SQUARE: f64 = 1e-6;
 /// The linear axes whose words can be those of a tip.
 pub(crate) const TIP_WORDS: [&str; 3] = ["X", "Y", "Z"];
 
-/// Names of the linear axes.
-fn linear_names(axes: &[Axis]) -> BTreeSet<&str> {
-    let linear = axes.iter().filter(|axis| !axis.joint.rotary);
-    linear.map(|axis| axis.name.as_str()).collect()
+/// Words of the linear axes.
+fn linear_words(axes: &[Axis]) -> BTreeSet<&str> {
+    axes.iter().filter(|axis| !axis.joint.rotary).map(Axis::word).collect()
 }
 
 /// A machine.
@@ -238,8 +238,10 @@ pub struct Head {
 /// One axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Address, `X`, `C`.
+    /// Its name in the machine file, `X`, `C`: its word in the program, unless `tip_word` is.
     pub name: String,
+    /// Its word where the control keeps the tip and the file calls three slides otherwise: `X`, `Y` or `Z`.
+    pub tip_word: Option<&'static str>,
     /// Where the file describes it.
     pub place: Option<SourcePlace>,
     /// It carries the workpiece (primed in the chain), else the tool.
@@ -303,6 +305,11 @@ pub enum Positions {
 }
 
 impl Axis {
+    /// Its word in the program.
+    pub fn word(&self) -> &str {
+        self.tip_word.unwrap_or(&self.name)
+    }
+
     /// Axis units (mm, radians) in one unit of what the control shows (mm, degrees).
     pub fn unit(&self) -> f64 {
         if self.joint.rotary { 1f64.to_radians() } else { 1.0 }
@@ -542,7 +549,7 @@ impl Machine {
             whole
                 && rotary == 2
                 && self.pointing().len() == 2
-                && linear_names(&self.axes) == BTreeSet::from(TIP_WORDS)
+                && linear_words(&self.axes) == BTreeSet::from(TIP_WORDS)
                 && self.heads.is_empty()
                 && self.errors.is_empty()
                 && self.slides_are_square()
@@ -566,7 +573,7 @@ impl Machine {
             .axes
             .iter()
             .enumerate()
-            .filter(|(_, axis)| !axis.joint.rotary && TIP_WORDS.contains(&axis.name.as_str()));
+            .filter(|(_, axis)| !axis.joint.rotary && TIP_WORDS.contains(&axis.word()));
         let turned = slides.find(|(place, slide)| {
             self.axes.iter().enumerate().any(|(other, axis)| {
                 let nearer_bed = if slide.carries_part { other > *place } else { other < *place };

@@ -70,7 +70,7 @@ impl AxisLimits {
             limits.jerk[place] = axis.max_jerk;
             limits.jump[place] = jump(axis.max_jump, axis.max_accel);
             if !axis.joint.rotary {
-                coordinates[place] = ["X", "Y", "Z"].iter().position(|name| *name == axis.name);
+                coordinates[place] = ["X", "Y", "Z"].iter().position(|name| *name == axis.word());
             }
         }
         if rules.limits == LimitsActOn::Programmed {

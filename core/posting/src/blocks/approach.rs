@@ -131,7 +131,7 @@ impl BlockStage<'_> {
             // Along it, and not into the part, it is the plane's own Z: the others come first where that is its word.
             let along =
                 ToolAlignment::of(&normal, &way) == ToolAlignment::Along && way.dot(&normal) > 0.0;
-            let word = axis_words::coordinate(&machine.axes[depth].name);
+            let word = axis_words::coordinate(machine.axes[depth].word());
             return word != DEPTH || !along;
         }
         if machine.control.tcp == Tcp::Post {
@@ -148,12 +148,12 @@ impl BlockStage<'_> {
         }
         // A slide that leans takes the tip aside, which words of the tip do not.
         let mut slides = machine.axes.iter().enumerate().filter(|(place, axis)| {
-            let named = matches!(axis.name.as_str(), "X" | "Y" | "Z");
+            let named = matches!(axis.word(), "X" | "Y" | "Z");
             !axis.joint.rotary && (named || *place == depth)
         });
         let leans = slides.any(|(place, axis)| {
             let mut aside = placer.solver().chain().way_of(place, joints);
-            aside[axis_words::coordinate(&axis.name)] = 0.0;
+            aside[axis_words::coordinate(axis.word())] = 0.0;
             aside.norm() > LEANS
         });
         // And so does the length of a tool that leans.

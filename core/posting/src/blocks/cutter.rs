@@ -10,7 +10,7 @@ use crate::accuracy::{PathNode, Placer};
 
 /// The machine has a linear axis of this name.
 fn slides(machine: &Machine, name: &str) -> bool {
-    machine.axes.iter().any(|axis| !axis.joint.rotary && axis.name == name)
+    machine.axes.iter().any(|axis| !axis.joint.rotary && axis.word() == name)
 }
 
 impl BlockStage<'_> {

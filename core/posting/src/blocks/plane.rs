@@ -149,7 +149,7 @@ impl BlockStage<'_> {
             .zip(&stands)
             .any(|(axis, value)| axis.joint.rotary && axis.reading(*value).abs() > 1e-9);
         let order = axis_words::order(machine);
-        let x = order.into_iter().find(|joint| machine.axes[*joint].name == "X");
+        let x = order.into_iter().find(|joint| machine.axes[*joint].word() == "X");
         // Upright under tool centre point control there is a plane too: a control has its cycles and its radius
         // compensation there.
         let told = turned || machine.control.tcp == Tcp::Control;

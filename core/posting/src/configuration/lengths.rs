@@ -69,9 +69,9 @@ impl LengthAxisCheck {
             }
             LengthAxis::Said(place) => Some(place),
             LengthAxis::Dialect if self.writes.has(Capabilities::LENGTH_ALONG_DEPTH) => {
-                depth.filter(|place| ["X", "Y", "Z"].contains(&machine.axes[*place].name.as_str()))
+                depth.filter(|place| ["X", "Y", "Z"].contains(&machine.axes[*place].word()))
             }
-            LengthAxis::Dialect => machine.axes.iter().position(|axis| axis.name == "Z"),
+            LengthAxis::Dialect => machine.axes.iter().position(|axis| axis.word() == "Z"),
         };
         let (along, miss) = machine.lies_along().unzip();
         // The word that puts it on stands with that of the depth; a quill beside it does as well.
@@ -203,7 +203,7 @@ impl LengthAxisCheck {
 
 /// The tool lies across Z, or points the other way, where the rotary axes show zero.
 fn lies_down(machine: &Machine) -> bool {
-    let z = machine.axes.iter().position(|axis| axis.name == "Z");
+    let z = machine.axes.iter().position(|axis| axis.word() == "Z");
     let stands = |z| {
         let (zero, axis) = lies(machine)?;
         let up = machine.solver(0.0).ok()?.chain().way_of(z, &zero);

@@ -55,7 +55,7 @@ pub(super) struct CycleWordPlaces {
 impl CycleWordPlaces {
     pub(super) fn new(machine: &Machine) -> Self {
         let order = axis_words::order(machine);
-        let z = order.iter().position(|joint| machine.axes[*joint].name == "Z");
+        let z = order.iter().position(|joint| machine.axes[*joint].word() == "Z");
         // Depths of a cycle are lengths: beside a word that is a multiple of its axis they would be of two sorts.
         let plain =
             |place: &usize| machine.word_map.as_ref().is_none_or(|map| map.is_plain(order[*place]));

@@ -72,7 +72,7 @@ impl Rapids {
         for (index, axis) in machine.axes.iter().enumerate() {
             self.rotary[index] = axis.joint.rotary;
             self.names.push(axis.name.clone());
-            if let Some(place) = ["X", "Y", "Z"].iter().position(|name| *name == axis.name) {
+            if let Some(place) = ["X", "Y", "Z"].iter().position(|name| *name == axis.word()) {
                 self.coordinates[place] = self.slowness[index];
             }
         }

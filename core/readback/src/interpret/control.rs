@@ -62,15 +62,15 @@ impl AxisLetters {
         }
         for (place, axis) in machine.axes.iter().enumerate() {
             axes.rotary |= u32::from(axis.joint.rotary) << place;
-            match axis.name.as_bytes() {
+            match axis.word().as_bytes() {
                 [letter @ b'A'..=b'Z'] => {
                     let letter = usize::from(letter - b'A');
                     axes.letters[letter] = u8::try_from(place).unwrap_or(Self::NONE);
                     axes.mask |= 1 << letter;
                 }
-                _ => axes.names.push((axis.name.clone(), place)),
+                _ => axes.names.push((axis.word().to_owned(), place)),
             }
-            let coordinate = ["X", "Y", "Z"].iter().position(|name| *name == axis.name);
+            let coordinate = ["X", "Y", "Z"].iter().position(|name| *name == axis.word());
             if let (Some(coordinate), false) = (coordinate, axis.joint.rotary) {
                 axes.cartesian[coordinate] = Some(place);
             }

@@ -59,7 +59,7 @@ fn across(control: &ControlState, said: &BlockNames<'_>) -> Answer<ArcPlane> {
     let second = ["U", "V", "W"].into_iter().find(|name| said.has(name));
     if let Some(name) = second {
         let machine = &control.machine;
-        let own = machine.axes.iter().position(|axis| axis.name == name);
+        let own = machine.axes.iter().position(|axis| axis.word() == name);
         let along = match machine.length_axis {
             LengthAxis::Said(place) => Some(place),
             _ => axis_words::depth(machine),

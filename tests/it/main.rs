@@ -50,6 +50,7 @@ mod lint;
 mod linuxcnc;
 mod lsp;
 #[cfg(target_os = "linux")]
+mod machine_messages;
 mod memory;
 mod messages;
 mod mutations;

@@ -28,6 +28,7 @@ pub mod tilted_plane;
 pub mod vector_choice;
 pub mod wait_rule;
 pub mod word_map;
+pub mod work_spindle;
 pub mod wrap_mode;
 
 /// What tests look into; no part of the crate's face.

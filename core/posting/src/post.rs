@@ -10,6 +10,7 @@ use post_machine::axis_words;
 use post_machine::description::{Machine, Tcp};
 use post_machine::diagnostic::{Diagnostic, SourcePlace};
 use post_machine::part_anywhere::AxisWay;
+use post_machine::work_spindle;
 use post_plugin::{DialectSession, ModelSession};
 
 use crate::accuracy::RunColumns;
@@ -477,6 +478,9 @@ impl<'a> Post<'a> {
             );
         }
         if let Some(warning) = self.stages.timing.low_feeds() {
+            self.findings.add(warning);
+        }
+        if let Some(warning) = work_spindle::beside(self.machine) {
             self.findings.add(warning);
         }
         let mut report = (!self.findings.failed()).then(|| self.report());

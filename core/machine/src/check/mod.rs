@@ -45,6 +45,7 @@ use crate::description::{Axis, Machine};
 use crate::diagnostic::Diagnostic;
 use crate::kinematics::NoClosedForm;
 use crate::kinematics::travel::{AT_END, passed};
+use crate::work_spindle;
 
 /// Everything that `post check` tells of one machine.
 #[derive(Clone, Debug, Serialize)]
@@ -195,6 +196,7 @@ fn warnings(
     }
     warnings.extend(misnamed(machine));
     warnings.extend(in_metres(machine));
+    warnings.extend(work_spindle::beside(machine).map(|warning| warning.message));
     // A tool that cannot stand upright is not asked for on the part origin: a live tool across a lathe never is there.
     if let Some(volume) = volume.filter(|_| reach.ways_upright > 0) {
         for beyond in &volume.origin_beyond {

@@ -203,6 +203,7 @@ impl DialectSession for Rounding {
             .and(Capabilities::SUBPROGRAM)
             .and(Capabilities::SURFACE_SPEED)
             .and(Capabilities::SMOOTHING)
+            .and(Capabilities::SIGN_IS_WAY)
             .and(Capabilities::CUTS);
         Capabilities::from_bits(self.dialect.capabilities().bits() & BETWEEN.bits())
     }

@@ -82,7 +82,7 @@ fn the_control_leads_the_tip_along_the_path_of_the_cl_file() {
         let feed = [150.0, 900.0, 6000.0][rng.pick(3)];
         let (word, factor) = [("X", 1.0), ("2 * X", 2.0)][rng.pick(2)];
         let radius = rng.pick(2) == 0;
-        let letter = ["C", "Y"][rng.pick(2)];
+        let letter = "C";
         let set = [
             format!("word.X.is={word}"),
             format!("mode.face.radius={radius}"),
@@ -283,6 +283,11 @@ fn transmit_is_read_as_the_machine_file_describes_it_alone() {
         "mode.face.letter=Y",
         "word.X.is=2 * X",
     ];
+    // The letter is that of the control.
+    let other =
+        run(folder.path(), &milled(&SQUARE, 300.0), &[&set[..3], &["mode.face.letter=C"]].concat());
+    assert_eq!((other.code, other.out.as_str()), (1, ""));
+    assert!(other.err.contains("the word of dialect siemens is Y, a length"), "{}", other.err);
     let made = run(folder.path(), &milled(&SQUARE, 300.0), &set);
     assert_eq!(made.code, 0, "{}", made.err);
     let verify = |program: &str, set: &[&str]| {
@@ -308,6 +313,7 @@ fn transmit_is_read_as_the_machine_file_describes_it_alone() {
     };
     refused("DIAMON", "DIAMOF", "diameters or radii of the words of X, against the machine file");
     refused("TRANSMIT", "TRANSMIT(2)", "this is data set 2 of the control");
+    refused("TRANSMIT", "TRANSMIT\nAROT Z90", "the frame is turned in polar interpolation");
     // The second data set is what a machine file of it describes, and the first is not.
     let second = made.out.replace("TRANSMIT", "TRANSMIT(2)");
     let mut of_second = set;

@@ -419,6 +419,47 @@ const QUADRANTS: [[f64; 2]; 9] = [
     [0.0, 0.0],
 ];
 
+/// The quadrants count as the words do: a turret on the other side of the part, whose X counts up away from the line too, has
+/// the same program.
+#[test]
+fn a_turret_on_the_other_side_has_the_same_quadrants() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = [[15.0, 0.0], [15.0, -20.0], [22.0, -31.0]];
+    let near = turned(&path, Speed::Fixed(900.0), 0.25);
+    let far = turned(&path.map(|[x, z]| [-x, z]), Speed::Fixed(900.0), 0.25);
+    let far = far.replace("GOTO/-10.0000", "GOTO/-20.0000").replace("GOTO/60,", "GOTO/-60,");
+    let words = |made: Run| {
+        assert_eq!(made.code, 0, "{}", made.err);
+        let lines = made.out.lines().filter(|line| line.contains('X'));
+        lines.map(str::to_owned).collect::<Vec<_>>()
+    };
+    for quadrant in 1..=9 {
+        let quadrant = format!("tools.1.quadrant={quadrant}");
+        let nose = ["cl.points=\"centre\"", "tools.1.nose=0.8", quadrant.as_str()];
+        let other = ["axis.X.linear=[-1, 0, 0]", "tool.gauge=[-320, 0, 470]"];
+        let here = words(run(folder.path(), &near, &nose));
+        let there = words(run(folder.path(), &far, &[&nose[..], &other].concat()));
+        assert_eq!(here, there, "{quadrant}");
+    }
+}
+
+/// C that leads the part to positions cannot be led while its spindle turns the part.
+#[test]
+fn on_a_chain_with_c_nothing_is_turned() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = [[15.0, 0.0], [15.0, -20.0]];
+    let part = folder.path().join("part.cls");
+    for speed in [Speed::Fixed(900.0), Speed::Surface(200.0, 3000.0)] {
+        fs::write(&part, turned(&path, speed, 0.25)).unwrap();
+        let part = part.to_str().unwrap();
+        let set = ["--set", "spindle.surface_speed=true", "--set", "spindle.max_speed=4000"];
+        let all = ["-m", "lathe-xzc-face", "--tool-length", "40", "-o", "-", part];
+        let made = post(&[&all[..], &set].concat());
+        assert_eq!((made.code, made.out.as_str()), (1, ""));
+        assert!(made.err.contains("C of the chain leads it to positions"), "{}", made.err);
+    }
+}
+
 #[test]
 fn points_of_the_centre_of_a_nose_are_written_as_those_of_its_tip_and_the_other_way_round() {
     let folder = tempfile::tempdir().unwrap();

@@ -9,6 +9,10 @@ use post_plugin::{Meaning, VocabularyWord};
 struct ModeBegin<'m> {
     key: &'static str,
     on: &'m [String],
+    /// The letter of the word of the mode, that of the turning axis outside, and whether the word is a length.
+    letter: &'m str,
+    own: &'m str,
+    is_length: bool,
     meaning: Meaning,
     what: &'static str,
 }
@@ -21,12 +25,18 @@ pub(super) fn unknown(machine: &Machine, dialect: &mut OpenedDialect) -> Option<
     let face = face.map(|face| ModeBegin {
         key: "mode.face",
         on: &face.on,
+        letter: &face.letter,
+        own: &machine.axes[face.turning].name,
+        is_length: true,
         meaning: Meaning::FaceTransformation,
         what: "polar interpolation",
     });
     let wrap = wrap.map(|wrap| ModeBegin {
         key: "mode.wrap",
         on: &wrap.on,
+        letter: &wrap.letter,
+        own: &machine.axes[wrap.turning].name,
+        is_length: wrap.lengths,
         meaning: Meaning::CylinderTransformation,
         what: "cylinder interpolation",
     });
@@ -45,11 +55,12 @@ pub(super) fn unknown(machine: &Machine, dialect: &mut OpenedDialect) -> Option<
 impl ModeBegin<'_> {
     /// What is wrong with its lines at the dialect of that name, and what would help.
     fn wrong(&self, name: &str, words: &[VocabularyWord]) -> Option<(String, String)> {
-        let ModeBegin { key, on, meaning, what } = self;
+        let ModeBegin { key, on, meaning, what, .. } = self;
         let said = format!("[{key}] on = \"{}\"", on.join(" "));
         let Some((line, code)) = self.begun_by(words) else {
             let message = format!("{said}: dialect {name} knows no word of it that begins {what}");
-            let known = words.iter().filter(|word| word.meaning == *meaning);
+            let alone = |word: &&VocabularyWord| !word.word.contains(' ');
+            let known = words.iter().filter(|word| word.meaning == *meaning).filter(alone);
             let known = known.map(|word| word.word.as_ref()).collect::<Vec<_>>().join(", ");
             let help = match known.is_empty() {
                 true => format!("{name} has none that is known here: leave [{key}] out"),
@@ -57,22 +68,45 @@ impl ModeBegin<'_> {
             };
             return Some((message, help));
         };
-        // A letter that the dialect has beside the code is what the control reads there: the radius, and more with it.
+        // Letters that the dialect has beside the code: of a radius or diameter in its block, and of the mode's own word.
         let beside = |word: &VocabularyWord| {
             let letter = word.word.strip_prefix(code.as_str())?.strip_prefix(' ')?.chars().next();
             letter.filter(|_| word.meaning == *meaning)
         };
-        let letters: Vec<char> = words.iter().filter_map(beside).collect();
+        let (sizes, letters): (Vec<char>, Vec<char>) =
+            words.iter().filter_map(beside).partition(|letter| SIZES.contains(letter));
         let has = |letter: &char| tokens(&line).any(|token| token.starts_with(*letter));
-        if letters.is_empty() || letters.iter().any(has) {
+        if !sizes.is_empty() && !sizes.iter().any(has) {
+            let listed = listed(&sizes);
+            let message =
+                format!("{said}: dialect {name} reads {listed} beside {code}, and there is none");
+            let help = format!(
+                "on = \"{code} Y0 C0 R{{r}}\": the letter whose words are laid along the cylinder (letter = \"Y\", lengths = true), that of the turning axis, the radius"
+            );
+            return Some((message, help));
+        }
+        let Self { letter, own, is_length, .. } = *self;
+        // Without a letter of its own the word of the turning axis is it: a length on a face, degrees on a cylinder.
+        let wants = if letters.is_empty() { own.to_owned() } else { listed(&letters) };
+        let right = match letters.is_empty() {
+            true => letter == own,
+            false => letters.iter().any(|known| letter.chars().eq([*known])),
+        };
+        let length = *meaning == Meaning::FaceTransformation || !letters.is_empty();
+        if right && is_length == length {
             return None;
         }
-        let listed = letters.iter().map(char::to_string).collect::<Vec<_>>().join(" or ");
-        let message =
-            format!("{said}: dialect {name} reads {listed} beside {code}, and there is none");
-        let help = format!(
-            "on = \"{code} Y0 C0 R{{r}}\": the letter whose words are laid along the cylinder (letter = \"Y\", lengths = true), that of the turning axis, the radius"
+        let kind = |length| if length { "a length" } else { "an angle" };
+        let message = format!(
+            "{said}: behind {code} the word of dialect {name} is {wants}, {}, and [{key}] makes it {letter}, {}",
+            kind(length),
+            kind(is_length)
         );
+        let first = letters.first().map_or_else(|| own.to_owned(), char::to_string);
+        let help = match *meaning {
+            Meaning::FaceTransformation => format!("letter = \"{first}\""),
+            _ => format!("letter = \"{first}\", lengths = {length}"),
+        };
         Some((message, help))
     }
 
@@ -87,6 +121,14 @@ impl ModeBegin<'_> {
             Some((line, code))
         })
     }
+}
+
+/// Letters of a radius and a diameter.
+const SIZES: [char; 2] = ['R', 'Q'];
+
+/// Letters, as messages have them.
+fn listed(letters: &[char]) -> String {
+    letters.iter().map(char::to_string).collect::<Vec<_>>().join(" or ")
 }
 
 /// The words of a line of the program.

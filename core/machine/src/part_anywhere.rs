@@ -88,7 +88,7 @@ impl AxisWay<'_> {
             most - least
         );
         Diagnostic::error("over-travel", message)
-            .help("another machine, or two set-ups; --units if the file's units are wrong")
+            .help("another machine, two set-ups, or other units of the file, if these are wrong")
     }
 
     /// How far an axis goes past its travel, and where the part origin must sit instead; none if it stays inside.

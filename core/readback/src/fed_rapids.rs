@@ -106,7 +106,9 @@ impl<P> FedRapids<P> {
                 continue;
             };
             let plain = motion.kind == MotionKind::Feed && !motion.hole && !motion.machine;
+            // What has no feed goes nowhere.
             if !plain
+                || motion.minutes <= 0.0
                 || motion.way.is_curved()
                 || self.kept && !motion.state.tcp
                 || motion.along == Some(true)

@@ -116,6 +116,8 @@ pub(super) enum Depth {
     Staged,
     /// It goes on as the cuts before and behind it do.
     Path,
+    /// It ends inside the raw part, where nothing was cut before.
+    Stock,
 }
 
 impl CutDepths {
@@ -202,6 +204,15 @@ impl CutDepths {
             let beside = |why| matches!(why, Depth::Down | Depth::Across);
             self.suspect = suspect.filter(|suspect| mills || !beside(suspect.rapid.why));
         }
+        let unsure = |suspect: Suspect| suspect.until.is_some();
+        if self.suspect.is_none_or(unsure)
+            && mills
+            && ends_in_stock(machine, motion)
+            && self.is_uncut(motion)
+        {
+            let rapid = DeepRapid { line: motion.line, why: Depth::Stock };
+            self.suspect = Some(Suspect { rapid, until: None });
+        }
         let known = self.suspect.is_some_and(|suspect| !matches!(suspect.rapid.why, Depth::Down));
         let staged = mills && before.is_some_and(|before| heading.goes_on_down(before, motion));
         if staged && !known && self.is_uncut(motion) {
@@ -262,6 +273,14 @@ impl CutDepths {
             }
         }
     }
+}
+
+/// A motion ends inside the box around the raw part, as far as that is known.
+fn ends_in_stock(machine: &Machine, motion: &Motion) -> bool {
+    let tip = motion.to.pose.tip;
+    machine.stock_extents().is_some_and(|[least, most]| {
+        (0..3).all(|part| tip[part] > least[part] + SLACK && tip[part] < most[part] - SLACK)
+    })
 }
 
 impl Suspect {

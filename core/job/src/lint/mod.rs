@@ -170,6 +170,15 @@ pub fn look_over<'m>(
         survey.take(done);
     })?;
     let RanProgram { report, faults, last_line } = ran;
+    if let Some(cut) = watch.unfed() {
+        let places = faults.iter().filter_map(|fault| fault.place.as_ref());
+        let ahead = places.map(|place| place.line).filter(|line| *line < cut).collect();
+        text.rewind().map_err(unreadable)?;
+        let missed = lines_of(&mut text, ahead).map_err(unreadable)?;
+        if !missed.iter().any(|(_, line)| line.contains(['F', 'f'])) {
+            watch.tell_unfed();
+        }
+    }
     let whole = faults.is_empty();
     let mut found = faults;
     found.extend(report.notes.iter().cloned());
@@ -181,7 +190,10 @@ pub fn look_over<'m>(
     found.extend(beyond.findings(name));
     found.extend(beyond.part_place(machine, name));
     found.extend(watch.finish(name, &report));
-    found.extend(fed_rapid(name, &report, &survey));
+    // Where G0 goes at F each may have one.
+    if control.spoken.rapid_feed.is_none() {
+        found.extend(fed_rapid(name, &report, &survey));
+    }
     found.extend(undrawn);
     before.extend(clear.map(|clear| clear.findings).unwrap_or_default());
     // What cannot be read of it was told, but for a disk that fails in one of the passes.

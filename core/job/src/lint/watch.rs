@@ -173,12 +173,17 @@ pub(super) struct LintWatch<'m> {
     registers: Vec<RegisterUse>,
     /// Speeds that the spindle was asked for, by their digits.
     speeds: BTreeMap<u64, bool>,
-    /// Some block was not understood: it may have said a feed.
+    /// Some block was not understood since a feed was known: it may have said another.
     missed: bool,
+    /// The first cut without a feed behind such a block, and how many there are.
+    unfed: Option<(u64, u64)>,
     stray: StrayPoints,
     /// The deepest rapid, or the first, of each kind, and how many there are.
     rapids: Vec<(DeepRapid, u64)>,
 }
+
+/// What is told of a cut without a feed.
+const NO_FEED: &str = "cuts without a feed: F is missing, or 0";
 
 impl<'m> LintWatch<'m> {
     pub fn new(control: &'m NcControl, depths: Option<CutDepths>) -> Self {
@@ -204,6 +209,7 @@ impl<'m> LintWatch<'m> {
             registers: Vec::new(),
             speeds: BTreeMap::new(),
             missed: false,
+            unfed: None,
             stray: StrayPoints::default(),
             rapids: Vec::new(),
         }
@@ -225,6 +231,19 @@ impl<'m> LintWatch<'m> {
         (self.new_tool, self.had_length, self.work.cuts) = (false, false, true);
         self.depths.iter_mut().for_each(CutDepths::miss);
         self.stray.miss();
+    }
+
+    /// The first cut without a feed behind a block that was not understood.
+    pub fn unfed(&self) -> Option<u64> {
+        self.unfed.map(|(line, _)| line)
+    }
+
+    /// None of the blocks that were not understood ahead of that cut says a feed.
+    pub fn tell_unfed(&mut self) {
+        if let Some((line, count)) = self.unfed.take() {
+            let message = NO_FEED.to_owned();
+            self.broken.push(Broken { rule: Rule::NoFeed, line, message, count });
+        }
     }
 
     /// Takes what the program did next.
@@ -316,12 +335,12 @@ impl<'m> LintWatch<'m> {
         if motion.kind == MotionKind::Rapid || motion.fast {
             return;
         }
-        if motion.kind == MotionKind::Feed
-            && motion.minutes <= 0.0
-            && !self.missed
-            && motion.from.joints != motion.to.joints
-        {
-            self.tell(Rule::NoFeed, motion.line, "cuts without a feed: F is missing, or 0");
+        if motion.kind == MotionKind::Feed && motion.from.joints != motion.to.joints {
+            match motion.minutes > 0.0 {
+                true => self.missed = false,
+                false if self.missed => self.unfed.get_or_insert((motion.line, 0)).1 += 1,
+                false => self.tell(Rule::NoFeed, motion.line, NO_FEED),
+            }
         }
         if let Some(ready) = &mut self.ready {
             ready.cuts = true;
@@ -367,6 +386,9 @@ impl<'m> LintWatch<'m> {
                 Depth::Staged => {
                     "a rapid goes on from close above to where a cut begins, and nothing was cut there before: is it to come down at feed?"
                         .to_owned()
+                }
+                Depth::Stock => {
+                    "a rapid ends inside the raw part ([stock]), where nothing was cut before".to_owned()
                 }
                 Depth::Path => {
                     "a rapid goes on as the cuts before and behind it do: is it one of them?".to_owned()

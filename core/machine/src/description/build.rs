@@ -355,7 +355,7 @@ impl Builder<'_> {
             // A nozzle travels at the height of its beads.
             own.accuracy.rapid_tolerance = own.accuracy.tolerance;
         }
-        let nose = self.nose(&file.cl, &file.tools, &axes, &own.spindle);
+        let nose = self.nose(&file.cl, &file.tools, &axes, word_map.as_ref(), &own.spindle);
         let solids = self.solids(&file.solids, &axes);
         let fixtures = self.fixtures(&file.fixture, &axes);
         let stocks = self.stocks(file.stock.as_ref(), &axes);

@@ -7,8 +7,9 @@ use super::build::Builder;
 use super::file::{ClFile, NosePoint};
 use super::spindle::SpindleSpeeds;
 use super::tools::ToolsFile;
+use crate::word_map::WordMap;
 
-/// Where the imaginary tip lies from the centre of the nose, X and Z of the part in radii, by the number of the quadrant
+/// Where the imaginary tip lies from the centre of the nose, in radii along the ways in which the words of X and Z count up, by the number of the quadrant
 /// from 1: as Haas has it (lathe operator's manual, "Imaginary Tool Tip and Direction"), and Fanuc and Siemens.
 const QUADRANTS: [[f64; 2]; 9] = [
     [1.0, 1.0],
@@ -56,8 +57,18 @@ impl Builder<'_> {
         cl: &ClFile,
         tools: &ToolsFile,
         axes: &[Axis],
+        word_map: Option<&WordMap>,
         spindle: &SpindleSpeeds,
     ) -> Option<NoseRule> {
+        // The quadrants count as the words of X and Z do: a turret on the other side has its own.
+        let counts = |name: &str, usual: Vector3<f64>| {
+            let Some(place) = axes.iter().position(|axis| axis.name == name) else {
+                return usual;
+            };
+            let factor = word_map.map_or(1.0, |map| map.factor(place));
+            axes[place].joint.direction * factor.signum()
+        };
+        let [across, along] = [counts("X", Vector3::x()), counts("Z", Vector3::z())];
         let mut shifts = Vec::new();
         for (number, outline) in &tools.outlines {
             let radius = self.checked(&outline.get_ref().nose);
@@ -84,7 +95,7 @@ impl Builder<'_> {
                 let help = "[cl] points = \"centre\" or \"tip\" says which of its points the CL file names, where the offsets in the control name the other";
                 self.fault("machine-tools", outline.span(), message, help);
             }
-            shifts.push((number, Vector3::new(x, 0.0, z) * radius.unwrap_or(0.0)));
+            shifts.push((number, (across * x + along * z) * radius.unwrap_or(0.0)));
         }
         let points = cl.points.as_ref()?;
         if !spindle.surface_speed || axes.iter().any(|axis| axis.joint.rotary) {

@@ -1,11 +1,12 @@
 //! Compensations of radius and length, tool centre point control, and work offsets.
 
+use post_machine::description::LengthAxis;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
 use super::block::BlockRequest;
 use super::block_words::{BlockWords, bit};
-use super::state::ControlState;
+use super::state::{ArcPlane, ControlState};
 use crate::ProgramEvent;
 use crate::g_code::GCode;
 use crate::lexicon::WordMeaning;
@@ -39,6 +40,35 @@ impl ControlState {
         Ok(())
     }
 
+    /// Why the length of a tool that does not turn the part would come on along another axis than it has: the plane says
+    /// which (SINUMERIK, fundamentals, tool offsets: G17 Z, G18 Y, G19 X).
+    fn lies_off_the_plane(&self) -> Option<String> {
+        if self.machine.spindle.surface_speed {
+            return None;
+        }
+        let place = match self.machine.length_axis {
+            LengthAxis::Said(place) => place,
+            LengthAxis::Dialect => self.machine.lies_along()?.0,
+            LengthAxis::None => return None,
+        };
+        let [word, letter] = match self.modal.plane {
+            ArcPlane::Xy => ["G17", "Z"],
+            ArcPlane::Zx => ["G18", "Y"],
+            ArcPlane::Yz => ["G19", "X"],
+        };
+        let axes = &self.machine.axes;
+        let wanted = axes[place].joint.direction;
+        let third = self.axes.cartesian[self.modal.plane.coordinates()[2]];
+        let alike =
+            third.is_some_and(|third| libm::fabs(axes[third].joint.direction.dot(&wanted)) > 0.999);
+        (!alike).then(|| {
+            format!(
+                "the length of the tool comes on along {letter}, as {word} has it, and the tool lies along {}",
+                axes[place].name
+            )
+        })
+    }
+
     /// Length, tool centre point control and edges.
     pub(super) fn compensations(
         &mut self,
@@ -50,6 +80,9 @@ impl ControlState {
                 self.tools.by_tool = true;
                 self.tools.length_on = edge != 0;
                 self.tools.across = self.modal.plane;
+                if let Some(lack) = self.lies_off_the_plane().filter(|_| edge != 0) {
+                    return Err(self.refuse("nc-word", lack));
+                }
                 self.state.length_register = (edge != 0).then_some(edge);
                 self.length_changed()?;
             }

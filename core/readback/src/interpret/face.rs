@@ -163,6 +163,11 @@ impl ControlState {
         };
         let mode = Arc::clone(&face.mode);
         let unlike = *path != Curve::Straight || target.vector.is_some() || target.ways != 0;
+        if !self.to_work.upright() {
+            self.face = Some(face);
+            let message = "the frame is turned in polar interpolation, and what the words are then is not followed";
+            return Err(self.refuse("nc-mode", message));
+        }
         if unlike || self.state.compensation != 0 {
             self.face = Some(face);
             let message = "in polar interpolation straight moves to positions are followed, without cutter compensation";

@@ -99,6 +99,19 @@ fn preset(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<
         }
         return Err(control.refuse("nc-frame", "G92 without X, Y or Z"));
     }
+    let unled: Vec<&str> = (0..3)
+        .filter(|row| said[*row].is_some())
+        .filter_map(|row| control.axes.cartesian[row])
+        .filter(|place| control.said & (1 << place) == 0)
+        .map(|place| control.machine.axes[place].name.as_str())
+        .collect();
+    if !unled.is_empty() {
+        let message = format!(
+            "G92 says what {} shows before the program has led it anywhere: the part lies where the machine happens to stand",
+            unled.join(", ")
+        );
+        control.note(Diagnostic::warning("nc-frame", message));
+    }
     let point = control.point();
     let mut origin = control.frames.outer.origin;
     for row in 0..3 {

@@ -175,6 +175,10 @@ impl ControlState {
         path: &Curve,
         target: &MotionTarget,
     ) -> Result<(), Box<Diagnostic>> {
+        if !self.to_work.upright() {
+            let message = "the frame is turned in cylinder interpolation, and what the words are then is not followed";
+            return Err(self.refuse("nc-mode", message));
+        }
         let unlike = *path != Curve::Straight || target.vector.is_some() || target.ways != 0;
         if unlike || self.state.compensation != 0 {
             let message = "in cylinder interpolation straight moves to positions are followed, without cutter compensation";

@@ -113,6 +113,9 @@ impl ClInterpreter {
             self.fault(record, "spindle", message, "SPINDL/SMM,speed,MAXRPM,limit");
             return;
         }
+        if !self.writer.milling {
+            self.turned_to_positions(record);
+        }
         let most = most.or(self.spindle.surface_speed.and_then(|(_, most)| most));
         self.spindle.rpm = None;
         self.spindle.surface_speed = Some((metres, most));
@@ -133,6 +136,20 @@ impl ClInterpreter {
                 "MODE/TURN, and the spindle of this machine does not turn the part".to_owned(),
                 "[spindle] surface_speed = true in the machine file says that it does",
             );
+        } else {
+            self.turned_to_positions(record);
+        }
+    }
+
+    /// A fault where the part is to be turned by a spindle, and an axis of the chain leads it to positions: they would be
+    /// written while it turns.
+    fn turned_to_positions(&mut self, record: &Record<'_>) {
+        if let Some(name) = self.reading.turned_by.clone() {
+            let message = format!(
+                "the part is to be turned, and {name} of the chain leads it to positions: words of {name} would be written while its spindle turns it"
+            );
+            let help = "turn it by a machine file of its own, whose chain has the slides alone ([w b Z X t]), in the same job";
+            self.fault(record, "mode-turn", message, help);
         }
     }
 

@@ -56,6 +56,8 @@ pub struct ReadingOptions {
     pub print: Print,
     /// The spindle turns the part: `SFM` and `SMM` are constant cutting speeds.
     pub surface_speed: bool,
+    /// The axis by which the part is turned to positions too: its spindle cannot turn it meanwhile.
+    pub turned_by: Option<String>,
     /// What leads to the points that the control counts by, where the file has others.
     pub nose: Option<NoseRule>,
     /// The feed is planned, which is one a minute.
@@ -105,6 +107,8 @@ impl ReadingOptions {
         self.knife = machine.edge.is_some() || machine.along.is_some();
         self.print = machine.control.print;
         self.surface_speed = machine.spindle.surface_speed;
+        let turns = machine.axes.iter().find(|axis| axis.joint.rotary && axis.carries_part);
+        self.turned_by = turns.map(|axis| axis.name.clone());
         self.nose.clone_from(&machine.nose);
         self.smoothing.clone_from(&machine.smoothing);
         self

@@ -276,31 +276,31 @@ fn what_leave_says_is_checked_against_the_machine() {
     }
 }
 
+/// Two operations on two faces of a part.
+const TWO_FACES: &str = "TOOL PATH/TOP,TOOL,MILL\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,6000,CLW\nRAPID\nGOTO/10,8,60,0,0,1\n\
+    FEDRAT/400,MMPM\nGOTO/10,8,30,0,0,1\nGOTO/25,9,30,0,0,1\nRAPID\nGOTO/25,9,60,0,0,1\nEND-OF-PATH\n\
+    TOOL PATH/SIDE,TOOL,MILL\nRAPID\nGOTO/-20,60,5,0,1,0\nFEDRAT/400,MMPM\nGOTO/-20,40,5,0,1,0\nGOTO/-10,40,7,0,1,0\n\
+    RAPID\nGOTO/-10,60,7,0,1,0\nEND-OF-PATH\nFINI\n";
+
 /// Drawn back along its own line and no more, as the machine file has it: the program is read back as good, a turn nearer to the
 /// part is not, and that the first turn is made wherever the tool stands is told.
 #[test]
 fn a_tool_that_is_drawn_back_alone_is_read_back() {
-    let sample = root().join("tests/machines/vmc-a.cls");
-    let sample = sample.to_str().unwrap();
     let leave = "control.leave={ along = \"tool\", distance = 100 }";
-    let folder = tempfile::tempdir().unwrap();
+    let folder = crate::common::with_file("two.cls", TWO_FACES);
     let with = ["-q", "-m", "vmc-a", "--tool-length", "60", "--set", leave];
     let run = |more: &[&str]| crate::common::post_in(folder.path(), &[&with[..], more].concat());
-    let posted = run(&[sample, "-o", "p.nc", "--verify"]);
+    let posted = run(&["two.cls", "-o", "p.nc", "--verify"]);
     assert_eq!(posted.code, 0, "{}", posted.err);
     let told = "warning[retract]: rotary axes turn as the program begins, with the tool where the operator left it";
     assert!(posted.err.contains(told), "{}", posted.err);
     let program = fs::read_to_string(folder.path().join("p.nc")).unwrap();
-    // Where A turns behind the first cut the tool stands 100 mm out: a tenth of that is too near.
-    let lines: Vec<&str> = program.lines().collect();
-    let turns = lines.iter().position(|line| *line == "A90.000").unwrap();
-    let out = lines[..turns].iter().rposition(|line| line.starts_with("G0 Z")).unwrap();
-    let z: f64 = lines[out].trim_start_matches("G0 Z").parse().unwrap();
-    let near = format!("G0 Z{:.3}", z - 90.0);
-    let spoilt: Vec<&str> =
-        (0..lines.len()).map(|at| if at == out { &near } else { lines[at] }).collect();
-    fs::write(folder.path().join("near.nc"), spoilt.join("\n")).unwrap();
-    let verify = ["verify", "near.nc", "--against", sample, "--posted"];
+    // Where A turns between the faces the tool stands 100 mm over the last point: 15 mm are too near.
+    let drawn_back = "(SIDE)\nZ160.000\nG49\nA270.000\n";
+    let near = program.replace(drawn_back, &drawn_back.replace("160", "75"));
+    assert_ne!(near, program);
+    fs::write(folder.path().join("near.nc"), near).unwrap();
+    let verify = ["verify", "near.nc", "--against", "two.cls", "--posted"];
     let all = [&verify[..1], &with[..], &verify[1..]].concat();
     let read = crate::common::post_in(folder.path(), &all);
     assert!(read.code == 1 && read.err.contains("and the tool is not retracted"), "{}", read.err);

@@ -67,12 +67,14 @@ impl<'m> Derived<'m> {
         let linear = machine.axes.iter().filter(|axis| !axis.joint.rotary);
         let way = match (&solver, machine.control.tcp) {
             (None, _) => Derivation::Nothing,
+            // The page has the chain as it is drawn, without the errors of its axes.
+            _ if machine.errs() => Derivation::Nothing,
             (_, Tcp::Control) if linear.count() == 3 => Derivation::FromTip,
             _ => Derivation::FromAxes,
         };
         Self {
             machine,
-            chain: solver.map(|solver| solver.chain().clone()),
+            chain: solver.map(|solver| solver.chain().clone().with_errors(&[].into())),
             way,
             checks: Vec::new(),
             next: 0,

@@ -192,7 +192,13 @@ impl Detour {
                     let goes_on = motion.is_some() || end.behind < asked.len() + passed.len();
                     (came && goes_on).then(|| end.tip_low(&asked, poses, slack[0])).flatten()
                 }
-                Some(turns) if own => end.turns_astray(machine, turns, poses, allowed),
+                Some(turns) if own => {
+                    // The length of the tool may have been called off since it came there.
+                    let before = place.checked_sub(1).map(|before| &open_ends[before]);
+                    let before = before.filter(|before| before.joints == end.from);
+                    let came = before.map_or(&end.came, |before| &before.pose);
+                    end.turns_astray(machine, turns, came, poses, allowed)
+                }
                 _ if end.led && (own || end.leans_as(&asked, lean)) => None,
                 _ => {
                     let retracted = retract::is_retracted(machine, &end.from, slack[0]);
@@ -229,14 +235,15 @@ impl RapidEnd {
         &self,
         machine: &Machine,
         axis: usize,
+        came: &Pose,
         mut poses: impl Iterator<Item = &'p Pose>,
         RapidAllowance { axes: [slack, _], lean, .. }: RapidAllowance,
     ) -> Option<StrayRapid> {
         let leaves = retract::drawn_back(machine);
         let sent = |pose: &Pose| {
             let back = |distance: f64| {
-                let out = (self.came.tip - pose.tip).dot(&pose.axis);
-                on_the_line(&self.came, pose, slack, lean) && out >= distance - slack
+                let out = (came.tip - pose.tip).dot(&pose.axis);
+                on_the_line(came, pose, slack, lean) && out >= distance - slack
             };
             self.off_line(pose, slack) <= slack || leaves.is_some_and(back)
         };

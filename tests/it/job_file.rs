@@ -330,6 +330,18 @@ fn a_strangers_job_file_has_an_end_and_overwrites_nothing_that_is_read() {
     refused(folder, &["part.job.toml"], &["no regular file"]);
     refused(folder, &["none.job.toml"], &["none.job.toml"]);
     refused(folder, &["a.job.toml", "b.job.toml"], &["two job files"]);
+    // A link that came with it leads nowhere else either.
+    #[cfg(unix)]
+    {
+        let elsewhere = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink(elsewhere.path(), folder.join("out")).unwrap();
+        fs::remove_dir(&job).unwrap();
+        fs::write(&job, format!("{head}output = \"out/plate.nc\"\n")).unwrap();
+        refused(folder, &["part.job.toml"], &["stands in its folder or below"]);
+        assert_eq!(fs::read_dir(elsewhere.path()).unwrap().count(), 0);
+        fs::remove_file(folder.join("out")).unwrap();
+        fs::remove_file(&job).unwrap();
+    }
     // What leads out of the folder, or would run code, stays on the command line.
     fs::create_dir_all(folder.join("jobs/plugins")).unwrap();
     let typed = ["-mvmc", "cl/plate.ncl", "--tool-length=80", "-oplate.nc", "-q"];

@@ -391,7 +391,6 @@ fn what_a_firmware_makes_otherwise_of_a_line_is_told() {
     }
 }
 
-/// G0 goes at F: another is another travel, and none is that of the beads.
 /// What E counts, and from where, holds from the print before unless a program says it.
 #[test]
 fn what_the_extruder_counts_from_is_told_where_a_program_does_not_say_it() {
@@ -411,6 +410,7 @@ fn what_the_extruder_counts_from_is_told_where_a_program_does_not_say_it() {
     }
 }
 
+/// G0 goes at F: another is another travel, and none is that of the beads.
 #[test]
 fn a_rapid_at_another_feed_is_told() {
     for firmware in &FIRMWARE {

@@ -244,6 +244,10 @@ fn what_the_mode_cannot_is_refused() {
     refused(&["axis.C.zero=10"], "show zero in the drawing");
     refused(&["mode.wrap.letter=Z"], "letter of another axis");
     refused(&["mode.wrap.radius=0"], "radius");
+    refused(&["mode.wrap.lengths=true"], "the word of dialect fanuc is C, an angle");
+    refused(&["mode.wrap.letter=Y"], "the word of dialect fanuc is C, an angle");
+    let tracyl = ["control.dialect=siemens", "mode.wrap.on=TRACYL({d})", "mode.wrap.off=TRAFOOF"];
+    refused(&tracyl, "the word of dialect siemens is Y, a length");
     refused(&["control.units=inch", "mode.wrap.lengths=true"], "in mm alone");
     refused(&["control.dialect=heidenhain"], "no word of it that begins cylinder interpolation");
     let check = post(&["check", "lathe-xzc-mantle", "--tool-length", "60"]);

@@ -81,7 +81,8 @@ impl ModeBegin<'_> {
             let message =
                 format!("{said}: dialect {name} reads {listed} beside {code}, and there is none");
             let help = format!(
-                "on = \"{code} Y0 C0 R{{r}}\": the letter whose words are laid along the cylinder (letter = \"Y\", lengths = true), that of the turning axis, the radius"
+                "on = \"{code} Y0 {}0 R{{r}}\": the letter whose words are laid along the cylinder (letter = \"Y\", lengths = true), that of the turning axis, the radius",
+                self.own
             );
             return Some((message, help));
         }

@@ -47,6 +47,9 @@ pub struct TextTable {
     rows: Vec<Vec<String>>,
 }
 
+/// A column is no wider than so many letters: a longer text stands in its row as it is, and makes no other row longer.
+const WIDEST: usize = 1000;
+
 impl TextTable {
     /// An empty table, of which the cells of the first `left` columns begin below one another, the others end so.
     pub fn new(left: usize) -> Self {
@@ -68,7 +71,7 @@ impl TextTable {
         let columns = self.rows.iter().map(Vec::len).max().unwrap_or_default();
         let widest = |column: usize| {
             let cells = self.rows.iter().filter_map(|row| Some(row.get(column)?.chars().count()));
-            cells.max().unwrap_or_default()
+            cells.max().unwrap_or_default().min(WIDEST)
         };
         let widths: Vec<usize> = (0..columns).map(widest).collect();
         let mut text = String::new();

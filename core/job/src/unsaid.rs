@@ -61,10 +61,7 @@ impl Unsaid<'_> {
     /// That no block stands in it.
     fn empty(&self) -> Option<Diagnostic> {
         self.last_line.filter(|_| self.report.blocks == 0)?;
-        let message = "no block stands in the file: it is empty, or no program";
-        let help =
-            "name the file that the control reads; it may have been cut off as it was written";
-        Some(Diagnostic::error("missing", message).help(help).at(self.at(1)))
+        Some(no_program(self.name))
     }
 
     /// Where axes stand that it cuts with. That of rotary ones is said elsewhere where a program of another hand turns none.
@@ -241,4 +238,12 @@ impl Unsaid<'_> {
         );
         Some(self.graded("hole", message).help(help).at(self.at(line)))
     }
+}
+
+/// No block stands in the file of that name.
+pub(crate) fn no_program(name: &str) -> Diagnostic {
+    let message = "no block stands in the file: it is empty, or no program";
+    let help = "name the file that the control reads; it may have been cut off as it was written";
+    let place = SourcePlace::new(name, 1, "", 0..0);
+    Diagnostic::error("missing", message).help(help).at(Some(place))
 }

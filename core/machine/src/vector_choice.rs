@@ -4,10 +4,8 @@
 use std::f64::consts::TAU;
 
 use crate::description::Machine;
+use crate::kinematics::travel::AT_END;
 use crate::kinematics::{Joints, MAX_AXES};
-
-/// What an axis passes its travel by without being outside, radians.
-const AT_END: f64 = 1e-9;
 
 /// How far the tool may be from a vector, radians: nearer to a pole than this an axis that the vector leaves free stands.
 pub const AIMED: f64 = 1e-4;

@@ -441,7 +441,7 @@ codes! {
         NoAxisWords = 215 "NO_AXIS_WORDS",
         /// Words of the extruder are positions, not ways: M82 of printers.
         ExtruderPositions = 216 "EXTRUDER_POSITIONS",
-        /// An arm goes straight in whatever configuration the way asks for: ConfL \\Off.
+        /// An arm goes straight in whatever configuration the way asks for: ConfL \Off.
         AnyConfiguration = 217 "ANY_CONFIGURATION",
     }
 }

@@ -284,3 +284,48 @@ fn of_a_stock_without_a_cutter_it_is_said_that_nothing_is_proven() {
     let told = found.to_string();
     assert!(told.contains("of cutters that are not drawn: cutter T1\""), "{found:#}");
 }
+
+/// A feed of 0 is seen while the control keeps the tip, and behind a block that is not understood and says no feed.
+#[test]
+fn cuts_without_a_feed_are_seen_wherever_they_stand() {
+    let tcp = "G21 G17 G40 G49 G80 G90 G94\nT1 M6\nS6000 M3\nG54\nM428\nG0 X0 Y0 A0 C0\nG43 H1 Z50\nM8\nZ2\nG1 Z-5\n\
+        X1 A1\nX2 A2\nG0 Z50\nM9\nM5\nM429\nG53 G0 Z0\nM30\n";
+    let mill = |odd: &str| {
+        format!(
+            "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z0.\nT1 M6\nS6000 M3\nG54\n{odd}\nG0 X0. Y0.\nG43 H1 Z50.\nM8\nG0 Z2.\n\
+             G1 Z-5. F0\nX20.\nG0 Z50.\nM9\nM5\nG49\nG53 G0 Z0.\nM30\n%\n"
+        )
+    };
+    let [odd, feeds] = ["G0 B0.", "G1 B0. F500."].map(mill);
+    let folder = folder(&[("tcp.ngc", tcp), ("odd.nc", &odd), ("feeds.nc", &feeds)]);
+    let lint = |name: &str, machine: &str| {
+        post_in(folder.path(), &["lint", name, "-m", machine, "--tool-length", "50"])
+    };
+    let says = "cuts without a feed: F is missing, or 0";
+    let run = lint("tcp.ngc", "xyzac-trt");
+    assert!(run.code == 1 && run.err.contains(says), "{}", run.err);
+    let run = lint("odd.nc", "vmc");
+    assert!(run.err.contains("B is no axis") && run.err.contains(says), "{}", run.err);
+    let run = lint("feeds.nc", "vmc");
+    assert!(run.err.contains("B is no axis") && !run.err.contains(says), "{}", run.err);
+}
+
+/// A rapid that ends inside the raw part is told, whether a cutter is drawn or not.
+#[test]
+fn rapids_into_the_raw_part_are_told_without_a_cutter() {
+    let into = |z: &str| {
+        format!(
+            "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z0.\nT1 M6\nS6000 M3\nG54\nG0 X0. Y0.\nG43 H1 Z50.\nM8\nG0 Z{z}\n\
+             G1 Z-6. F500.\nX60.\nY40.\nG0 Z50.\nM9\nM5\nG49\nG53 G0 Z0.\nM30\n%\n"
+        )
+    };
+    let [deep, above] = ["-5.", "2."].map(into);
+    let folder = folder(&[("deep.nc", &deep), ("above.nc", &above)]);
+    let says = "a rapid ends inside the raw part ([stock]), where nothing was cut before";
+    for (name, told) in [("deep.nc", true), ("above.nc", false)] {
+        let stock = "stock.block=[[-5, -5, -20], [65, 45, 0]]";
+        let all = ["lint", name, "-m", "vmc", "--tool-length", "100", "--set", stock];
+        let run = post_in(folder.path(), &all);
+        assert_eq!(run.err.contains(says), told, "{name}: {}", run.err);
+    }
+}

@@ -21,6 +21,20 @@ pub(super) fn is_below(path: &Path) -> bool {
     parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
+/// What stands at `path` of `folder` now lies there or below: no link on the way leads elsewhere.
+pub(super) fn leads_below(folder: &Path, path: &Path) -> bool {
+    let Ok(home) = folder.canonicalize() else {
+        // What is not there yet has no links.
+        return true;
+    };
+    let mut at = folder.to_owned();
+    path.components().all(|part| {
+        at.push(part);
+        let link = at.symlink_metadata().is_ok_and(|found| found.is_symlink());
+        !link || at.canonicalize().is_ok_and(|place| place.starts_with(&home))
+    })
+}
+
 /// `path` as a file in `folder` names it, with slashes; both are absolute. What has no way there stays absolute.
 pub(super) fn relative(path: &Path, folder: &Path) -> String {
     let (path, folder) = (plain(path), plain(folder));

@@ -355,7 +355,11 @@ impl JobReading<'_> {
         let Some(path) = value.get_ref().as_str().filter(|_| is_path) else {
             return true;
         };
-        if paths::is_below(Path::new(path)) && path != "-" {
+        let folder = paths::folder(self.path);
+        if paths::is_below(Path::new(path))
+            && path != "-"
+            && paths::leads_below(&folder, Path::new(path))
+        {
             return true;
         }
         let message =

@@ -12,6 +12,7 @@ use post_readback::{FedRapids, MOST_FAULTS};
 
 use super::nc_program::{self, NcControl, ProgramFile};
 use super::nc_to_cl::{self, Tools};
+use super::unsaid::no_program;
 use crate::failure::Failure;
 use crate::files::{AtomicFile, PathArg, Role};
 use crate::nc_program::RunningProgram;
@@ -81,6 +82,9 @@ pub fn read<'m>(
         }
     }
     let mut refused = run.faults().to_vec();
+    if refused.is_empty() && run.program().report().blocks == 0 {
+        refused.push(no_program(name));
+    }
     if refused.len() == MOST_FAULTS {
         refused.push(nc_program::given_up());
     }

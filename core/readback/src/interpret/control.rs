@@ -427,7 +427,7 @@ impl ModalState {
             || (0..machine.axes.len()).any(|place| is_diameter(machine, place));
         let diameters = if turns { 0 } else { ModalGroup::Diameter.bit() };
         let extrudes = machine.along.as_ref().is_some_and(|word| word.name == "E");
-        let extruder = if extrudes { 0 } else { ModalGroup::EXTRUDER };
+        let extruder = if extrudes { 0 } else { ModalGroup::OF_EXTRUDERS };
         Self {
             motion: if named { MotionMode::Linear } else { MotionMode::None },
             unset: lexicon.modes() & !(diameters | extruder),

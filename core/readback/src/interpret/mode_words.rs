@@ -37,7 +37,8 @@ fn data_set(line: &str) -> Option<f64> {
     let (name, behind) = line.split_once('(')?;
     let inside = behind.split_once(')')?.0;
     let mut values = inside.split(',').map(str::trim);
-    let alone = name.trim().eq_ignore_ascii_case("TRANSMIT");
+    let name = name.split_whitespace().next_back().unwrap_or_default();
+    let alone = name.eq_ignore_ascii_case("TRANSMIT");
     let value = if alone { values.next() } else { values.nth(1) };
     value?.parse().ok()
 }

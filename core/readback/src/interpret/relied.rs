@@ -59,7 +59,7 @@ const LEFT_ON: u16 =
 
 impl ModalGroup {
     /// The bits of an extruder's modes.
-    pub(super) const EXTRUDER: u16 = Self::Extruder.bit() | Self::ExtruderStart.bit();
+    pub(super) const OF_EXTRUDERS: u16 = Self::Extruder.bit() | Self::ExtruderStart.bit();
 
     /// The mode that a word with this meaning sets, if it sets one.
     pub fn of(meaning: Meaning) -> Option<Self> {
@@ -138,7 +138,7 @@ impl ModalGroup {
     pub(crate) fn named(words: &[VocabularyWord]) -> u16 {
         let groups = words.iter().filter_map(|word| Self::of(word.meaning));
         groups.fold(0, |bits, group| match group {
-            Self::Extruder => bits | Self::EXTRUDER,
+            Self::Extruder => bits | Self::OF_EXTRUDERS,
             _ => bits | group.bit(),
         })
     }

@@ -28,6 +28,7 @@ impl Progress {
     pub(crate) fn new() -> io::Result<(Self, OwnedFd)> {
         let file = file()?;
         rustix::fs::ftruncate(&file, BYTES as u64)?;
+        keep_size(&file)?;
         Ok((Self::of(&file)?, file))
     }
 
@@ -74,7 +75,21 @@ impl Drop for Progress {
 /// A file in memory that has no name.
 #[cfg(any(target_os = "linux", target_os = "android", target_os = "freebsd"))]
 fn file() -> io::Result<OwnedFd> {
-    Ok(rustix::fs::memfd_create("post", rustix::fs::MemfdFlags::CLOEXEC)?)
+    let flags = rustix::fs::MemfdFlags::CLOEXEC | rustix::fs::MemfdFlags::ALLOW_SEALING;
+    Ok(rustix::fs::memfd_create("post", flags)?)
+}
+
+/// Nobody makes the file shorter: memory behind its end could not be read.
+#[cfg(any(target_os = "linux", target_os = "android", target_os = "freebsd"))]
+fn keep_size(file: &OwnedFd) -> io::Result<()> {
+    use rustix::fs::SealFlags;
+    Ok(rustix::fs::fcntl_add_seals(file, SealFlags::SHRINK | SealFlags::GROW | SealFlags::SEAL)?)
+}
+
+/// Such a file keeps no size.
+#[cfg(not(any(target_os = "linux", target_os = "android", target_os = "freebsd")))]
+fn keep_size(_file: &OwnedFd) -> io::Result<()> {
+    Ok(())
 }
 
 /// A file in memory whose name is taken away at once.

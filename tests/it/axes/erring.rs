@@ -53,7 +53,6 @@ fn keeps_to_its_cuts(setup: Setup, errors: &str, text: &str) {
     let (name, made) = (setup.machine, setup.made(text));
     let tolerance = made.model.tolerance;
     let kept = largest(&made, &made.model, text);
-    println!("{name}: {kept} mm");
     assert!(kept <= tolerance + ROUNDING, "{name}: {kept} mm\n{}", made.text);
     let nominal = on(name).long(made.length).model(None);
     let without = largest(&made, &nominal, text);

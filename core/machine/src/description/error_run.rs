@@ -129,6 +129,12 @@ fn column(head: &str) -> Column<'_> {
     Column { name, unit: Some(unit).filter(|unit| !unit.is_empty()) }
 }
 
+/// The units that a column may have, each with what its numbers are multiplied by, and that of a column that names none.
+struct KnownUnits {
+    known: &'static [(&'static str, f64)],
+    unsaid: f64,
+}
+
 /// What numbers of each column are multiplied by to be mm, mm/m, or degrees of a rotary axis.
 fn factors(
     columns: &[Column<'_>],
@@ -137,12 +143,13 @@ fn factors(
     units: ErrorUnits,
 ) -> Result<Vec<f64>, String> {
     let own = if axis.joint.rotary { &ANGLES[..] } else { &LENGTHS[..] };
-    let of_part = |part: &usize| match *part > 2 {
-        true => (&TURNS[..], units.in_mm()),
-        false => (&LENGTHS[..], units.in_mm()),
+    let of_part = |part: &usize| {
+        let known = if *part > 2 { &TURNS[..] } else { &LENGTHS[..] };
+        KnownUnits { known, unsaid: units.in_mm() }
     };
-    let kinds = std::iter::once((own, 1.0)).chain(parts.iter().map(of_part));
-    let factor = |(column, (known, unsaid)): (&Column<'_>, (&[(&str, f64)], f64))| {
+    let own = KnownUnits { known: own, unsaid: 1.0 };
+    let kinds = std::iter::once(own).chain(parts.iter().map(of_part));
+    let factor = |(column, KnownUnits { known, unsaid }): (&Column<'_>, KnownUnits)| {
         let Some(unit) = column.unit else {
             return Ok(unsaid);
         };

@@ -94,6 +94,10 @@ impl Control for Fagor {
             return Ok(false);
         };
         engine.must_leave_plane("a tool change")?;
+        // D puts the length across the plane (CNC 8070, programming manual, tool length).
+        if let Some(word) = engine.motion.leave_other_plane() {
+            engine.line(word, out);
+        }
         engine.change(number, &format!("T{number} D{}", self.edge), register, name, out);
         Ok(true)
     }

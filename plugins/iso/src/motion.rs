@@ -165,6 +165,15 @@ impl MotionWriter {
         self.feed_mode.is(word)
     }
 
+    /// The word of the plane of X and Y, to stand in a line of its own, where another one is in force.
+    pub fn leave_other_plane(&mut self) -> Option<&'static str> {
+        let word = self.codes.planes[0];
+        std::mem::take(&mut self.other_plane).then(|| {
+            self.plane.set(word);
+            word
+        })
+    }
+
     /// The plane of X and Y is in force again, in the block under construction.
     pub(crate) fn plane_xy(&mut self) {
         if std::mem::take(&mut self.other_plane) {

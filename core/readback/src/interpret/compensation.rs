@@ -1,6 +1,6 @@
 //! Compensations of radius and length, tool centre point control, and work offsets.
 
-use post_machine::description::LengthAxis;
+use post_machine::description::{LengthAxis, Tcp};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::{Language, Meaning};
 
@@ -43,7 +43,8 @@ impl ControlState {
     /// Why the length of a tool that does not turn the part would come on along another axis than it has: the plane says
     /// which (SINUMERIK, fundamentals, tool offsets: G17 Z, G18 Y, G19 X).
     fn lies_off_the_plane(&self) -> Option<String> {
-        if self.machine.spindle.surface_speed {
+        // What keeps the tip knows the tool's own direction.
+        if self.machine.spindle.surface_speed || self.machine.control.tcp == Tcp::Control {
             return None;
         }
         let place = match self.machine.length_axis {

@@ -112,7 +112,7 @@ impl Dialect for Krl {
     fn relies_on(&self) -> Vec<String> {
         let tool = self.tool;
         let mut relies = vec![
-            format!("TOOL_DATA[{tool}] has its origin in the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all axes are at zero; that frame is the robot's ($NULLFRAME)"),
+            format!("TOOL_DATA[{tool}] has its origin in the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all axes are at zero (along its Y where the tool lies along X there); that frame is the robot's ($NULLFRAME)"),
             "LIN leads the tool straight and turns it evenly about one direction, PTP leads all axes so that they arrive together".to_owned(),
             LANGUAGE.relies_on(),
         ];

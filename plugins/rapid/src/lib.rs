@@ -140,7 +140,7 @@ impl Dialect for Rapid {
 
     fn relies_on(&self) -> Vec<String> {
         let mut relies = vec![
-            "where MoveL is written it leads the tool straight and turns it evenly about one direction; the frame of the tool has its origin in the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all axes are at zero; wobj0 is the machine file's frame".to_owned(),
+            "where MoveL is written it leads the tool straight and turns it evenly about one direction; the frame of the tool has its origin in the tip, its Z from the spindle to the tip, its X along that of the machine file's frame where all axes are at zero (along its Y where the tool lies along X there); wobj0 is the machine file's frame".to_owned(),
             "MoveAbsJ leads all axes of the arm and beside it evenly in time, so that they arrive together, whatever tool and work object are".to_owned(),
             LANGUAGE.relies_on(),
         ];

@@ -47,14 +47,13 @@ pub(super) fn unknown(machine: &Machine, dialect: &mut OpenedDialect) -> Option<
         return None;
     }
     let name = &machine.control.dialect;
-    let (message, help) = modes.find_map(|mode| mode.wrong(name, &words))?;
-    let place = machine.control.dialect_place.clone();
-    Some(Diagnostic::error("machine-mode", message).help(help).at(place))
+    let wrong = modes.find_map(|mode| mode.wrong(name, &words))?;
+    Some(wrong.at(machine.control.dialect_place.clone()))
 }
 
 impl ModeBegin<'_> {
-    /// What is wrong with its lines at the dialect of that name, and what would help.
-    fn wrong(&self, name: &str, words: &[VocabularyWord]) -> Option<(String, String)> {
+    /// What is wrong with it at the dialect of that name.
+    fn wrong(&self, name: &str, words: &[VocabularyWord]) -> Option<Diagnostic> {
         let ModeBegin { key, on, meaning, what, .. } = self;
         let said = format!("[{key}] on = \"{}\"", on.join(" "));
         let Some((line, code)) = self.begun_by(words) else {
@@ -66,7 +65,7 @@ impl ModeBegin<'_> {
                 true => format!("{name} has none that is known here: leave [{key}] out"),
                 false => format!("{name} has {known}"),
             };
-            return Some((message, help));
+            return Some(Diagnostic::error("machine-mode", message).help(help));
         };
         // Letters that the dialect has beside the code: of a radius or diameter in its block, and of the mode's own word.
         let beside = |word: &VocabularyWord| {
@@ -84,31 +83,38 @@ impl ModeBegin<'_> {
                 "on = \"{code} Y0 {}0 R{{r}}\": the letter whose words are laid along the cylinder (letter = \"Y\", lengths = true), that of the turning axis, the radius",
                 self.own
             );
-            return Some((message, help));
+            return Some(Diagnostic::error("machine-mode", message).help(help));
         }
-        let Self { letter, own, is_length, .. } = *self;
-        // Without a letter of its own the word of the turning axis is it: a length on a face, degrees on a cylinder.
-        let wants = if letters.is_empty() { own.to_owned() } else { listed(&letters) };
-        let right = match letters.is_empty() {
+        let behind = format!("{said}: behind {code} the word of dialect {name}");
+        self.wrong_word(&behind, &letters)
+    }
+
+    /// What is wrong with its word, where the dialect has it behind one of these `letters`; `behind` begins the message. Without
+    /// letters the word of the turning axis is it: a length on a face, degrees on a cylinder.
+    fn wrong_word(&self, behind: &str, letters: &[char]) -> Option<Diagnostic> {
+        let ModeBegin { key, letter, own, is_length, meaning, .. } = *self;
+        let is_own = letters.is_empty();
+        let right = match is_own {
             true => letter == own,
             false => letters.iter().any(|known| letter.chars().eq([*known])),
         };
-        let length = *meaning == Meaning::FaceTransformation || !letters.is_empty();
+        let length = meaning == Meaning::FaceTransformation || !is_own;
         if right && is_length == length {
             return None;
         }
+        let wants = if is_own { own.to_owned() } else { listed(letters) };
         let kind = |length| if length { "a length" } else { "an angle" };
         let message = format!(
-            "{said}: behind {code} the word of dialect {name} is {wants}, {}, and [{key}] makes it {letter}, {}",
+            "{behind} is {wants}, {}, and [{key}] makes it {letter}, {}",
             kind(length),
             kind(is_length)
         );
         let first = letters.first().map_or_else(|| own.to_owned(), char::to_string);
-        let help = match *meaning {
+        let help = match meaning {
             Meaning::FaceTransformation => format!("letter = \"{first}\""),
             _ => format!("letter = \"{first}\", lengths = {length}"),
         };
-        Some((message, help))
+        Some(Diagnostic::error("machine-mode", message).help(help))
     }
 
     /// The line, in capitals, and the code of it that begins the mode.

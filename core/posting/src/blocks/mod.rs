@@ -30,7 +30,7 @@ use crate::accuracy::{
     DeviationBound, LineariseError, Lineariser, MoveRoom, NodeMove, NodeRun, PathNode, PlacedBatch,
     Placer, RunPosition,
 };
-use crate::configuration::{ChoiceNote, ChosenPoint, pose};
+use crate::configuration::{ChoiceNote, ChosenPoint, pose, tells_vectors};
 use crate::curve::CurvePolicy;
 use crate::expand::FixedAxis;
 use crate::findings::Findings;
@@ -205,7 +205,7 @@ impl<'a> BlockStage<'a> {
             between: CompensatingMotion::new(machine),
             gathered: PendingRun::default(),
             keeps: CurvePolicy::new(machine, writes),
-            by_vector: tcp && writes.has(Capabilities::TOOL_VECTOR),
+            by_vector: tells_vectors(machine, writes),
             plans: false,
             driven: driven(machine),
             nominal: Vec::new(),

@@ -135,6 +135,11 @@ pub(crate) struct ConfigurationStage<'a> {
     findings: Findings,
 }
 
+/// The control is told the tool axis as a vector, and finds rotary values of its own for it.
+pub(crate) fn tells_vectors(machine: &Machine, writes: Capabilities) -> bool {
+    machine.control.tcp == Tcp::Control && writes.has(Capabilities::TOOL_VECTOR)
+}
+
 impl<'a> ConfigurationStage<'a> {
     /// Begins where the machine file says.
     ///
@@ -148,12 +153,11 @@ impl<'a> ConfigurationStage<'a> {
         findings: &Findings,
     ) -> Result<Self, Box<Diagnostic>> {
         let route = Route::new(machine, format, told_length.unwrap_or(0.0))?;
-        let vectors = machine.control.tcp == Tcp::Control && writes.has(Capabilities::TOOL_VECTOR);
         Ok(Self {
             lengths: LengthAxisCheck::new(writes),
             machine,
             base: machine,
-            route: match vectors {
+            route: match tells_vectors(machine, writes) {
                 true => route.by_vector(),
                 false => route,
             },

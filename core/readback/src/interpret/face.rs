@@ -163,10 +163,9 @@ impl ControlState {
         };
         let mode = Arc::clone(&face.mode);
         let unlike = *path != Curve::Straight || target.vector.is_some() || target.ways != 0;
-        if !self.to_work.upright() {
+        if let Err(turned) = self.is_unturned_in("polar") {
             self.face = Some(face);
-            let message = "the frame is turned in polar interpolation, and what the words are then is not followed";
-            return Err(self.refuse("nc-mode", message));
+            return Err(turned);
         }
         if unlike || self.state.compensation != 0 {
             self.face = Some(face);

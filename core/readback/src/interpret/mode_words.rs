@@ -69,6 +69,15 @@ impl ControlState {
         })
     }
 
+    /// Refuses a move in a frame that was turned since the mode of that name began.
+    pub(super) fn is_unturned_in(&self, mode: &str) -> Result<(), Box<Diagnostic>> {
+        if self.to_work.upright() {
+            return Ok(());
+        }
+        let lack = "and what the words are then is not followed";
+        Err(self.refuse("nc-mode", format!("the frame is turned in {mode} interpolation, {lack}")))
+    }
+
     /// `word` begins a mode that the machine file says nothing of; its table is `key`.
     pub(super) fn unknown_mode(&self, word: &str, key: &str) -> Box<Diagnostic> {
         let message = format!("{word}, and this is not run");

@@ -124,14 +124,9 @@ impl ModalGroup {
             has(Meaning::ToolFrame) && has(Meaning::OwnToolFrame),
             has(Meaning::WorkOffset) && has(Meaning::WorkOffsetOff),
         ];
-        let configuration = has(Meaning::AnyConfiguration);
-        let bits = [
-            (tool, Self::ToolFrame),
-            (base, Self::BaseFrame),
-            (configuration, Self::Configuration),
-        ]
-        .into_iter();
-        bits.filter(|(is, _)| *is).fold(0, |bits, (_, group)| bits | group.bit())
+        let free = has(Meaning::AnyConfiguration);
+        let bits = [(tool, Self::ToolFrame), (base, Self::BaseFrame), (free, Self::Configuration)];
+        bits.into_iter().filter(|(is, _)| *is).fold(0, |bits, (_, group)| bits | group.bit())
     }
 
     /// The bits of the modes that a dialect has words for: what its control has fixed, no program can set.

@@ -79,6 +79,7 @@ impl ControlState {
         let mapped = [b'X', b'Y', b'Z'].into_iter().find(|letter| take(*letter).is_some());
         let turning = turning.and_then(&mut take).is_some();
         let radius = take(b'R').or(take(b'Q').map(|diameter| diameter / 2.0));
+        let radius = radius.map(|radius| radius * self.modal.unit);
         let Some(mapped) = mapped.map(char::from) else {
             return match (turning, radius) {
                 (false, None) => self.end_wrap(),
@@ -99,16 +100,8 @@ impl ControlState {
                 )
             }
             _ if !turning => "a cylinder, and not which axis turns it".to_owned(),
-            _ if radius.is_none() => {
-                "a cylinder, and not its radius: that of the last is taken".to_owned()
-            }
-            _ => {
-                return self.begin_wrap(
-                    radius.map(|radius| radius * self.modal.unit),
-                    1.0,
-                    &code.to_string(),
-                );
-            }
+            _ if radius.is_some() => return self.begin_wrap(radius, 1.0, &code.to_string()),
+            _ => "a cylinder, and not its radius: that of the last is taken".to_owned(),
         };
         Err(self.refuse("nc-mode", format!("{code} tells of {lack}")))
     }
@@ -175,10 +168,7 @@ impl ControlState {
         path: &Curve,
         target: &MotionTarget,
     ) -> Result<(), Box<Diagnostic>> {
-        if !self.to_work.upright() {
-            let message = "the frame is turned in cylinder interpolation, and what the words are then is not followed";
-            return Err(self.refuse("nc-mode", message));
-        }
+        self.is_unturned_in("cylinder")?;
         let unlike = *path != Curve::Straight || target.vector.is_some() || target.ways != 0;
         if unlike || self.state.compensation != 0 {
             let message = "in cylinder interpolation straight moves to positions are followed, without cutter compensation";

@@ -46,6 +46,7 @@ mod languages;
 mod leaning_axes;
 mod lengths;
 mod library;
+mod lingering;
 mod lint;
 mod linuxcnc;
 mod lsp;

@@ -9,7 +9,7 @@
 
 use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
 use super::report::{BlockPlace, lines_of};
-use super::track::ElementKind;
+use super::track::{ElementKind, MOST_AT_ONCE};
 use super::{COMPUTED, Verifier, state};
 use crate::course::Course;
 use crate::{Motion, MotionKind};
@@ -46,6 +46,8 @@ enum SweepOutcome {
     Stopped(usize),
     /// The motion has no place.
     Nowhere,
+    /// The motion has more places than are held against it.
+    Lost,
 }
 
 /// What of a free side of a cell can be reached: all of it where the side `across` it is entered; else, from the one that
@@ -170,6 +172,10 @@ impl<C: Course> Verifier<'_, C> {
                     }
                 }
                 SweepOutcome::Nowhere => go_back(&mut self.reach),
+                SweepOutcome::Lost => {
+                    self.lose_the_place(motion);
+                    return false;
+                }
             }
             if draws_back(places, &self.bound) {
                 go_back(&mut self.reach);
@@ -191,6 +197,16 @@ impl<C: Course> Verifier<'_, C> {
             }
             return true;
         }
+    }
+
+    /// Nobody can say any more where on the course the program stands: nothing of it is looked at further.
+    fn lose_the_place(&mut self, motion: &Motion) {
+        let message = format!(
+            "verify has lost the program's place: more than {MOST_AT_ONCE} pieces of the CL path lie within the tolerance of one point"
+        );
+        let cl_line = self.stands_at();
+        self.fault("lost", message, Some(motion), Some(cl_line), None);
+        self.found.gave_up = true;
     }
 
     fn factor(&self) -> f64 {
@@ -284,6 +300,10 @@ impl<C: Course> Verifier<'_, C> {
             spare.clear();
             let column = self.column(&ends[0], &ends[1], bound, &reach, &mut spare);
             std::mem::swap(&mut reach, &mut spare);
+            if column.cut_short && self.stray.is_none() && measured {
+                swept = SweepOutcome::Lost;
+                break;
+            }
             let Some((apart, line)) = column.here else {
                 swept = column.stopped.map_or(SweepOutcome::Nowhere, SweepOutcome::Stopped);
                 break;
@@ -317,7 +337,7 @@ impl<C: Course> Verifier<'_, C> {
         reach: &[ShareSpan],
         out: &mut Vec<ShareSpan>,
     ) -> PieceOutcome {
-        let mut column = PieceOutcome { here: None, stopped: None };
+        let mut column = PieceOutcome::default();
         let mut apart: Option<PlaceDistance> = None;
         // The element that the piece leads to, and how far its end is from it.
         let (mut line, mut off) = (0, f64::INFINITY);
@@ -330,6 +350,10 @@ impl<C: Course> Verifier<'_, C> {
                 out.push(ShareSpan::EMPTY);
                 index += 1;
                 continue;
+            }
+            if index >= MOST_AT_ONCE {
+                column.cut_short = true;
+                break;
             }
             let Some(element) = self.track.get(index) else {
                 break;
@@ -588,9 +612,12 @@ fn thinned(places: &[ToolPlace], factor: f64, thin: &mut Vec<ToolPlace>) {
 }
 
 /// What became of a piece.
+#[derive(Default)]
 struct PieceOutcome {
     /// How near its end is to the course, and the line there; none if it has no place.
     here: Option<(PlaceDistance, u64)>,
     /// An element that no cut passes.
     stopped: Option<usize>,
+    /// There were more elements to hold it against than are.
+    cut_short: bool,
 }

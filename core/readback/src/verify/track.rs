@@ -109,8 +109,11 @@ pub(super) struct CourseTrack<C> {
     pub faults: Vec<Diagnostic>,
 }
 
-/// More elements are not kept: a program that lingers over more of its path is lost.
+/// More elements are not kept.
 pub(super) const MOST: usize = 60_000;
+
+/// A program that may stand on more elements at a time is lost: each of its motions would be held against all of them.
+pub(super) const MOST_AT_ONCE: usize = 10_000;
 
 /// Commands of the spindle that are kept of a tool.
 pub(super) const MOST_SPEEDS: usize = 64;
@@ -333,8 +336,15 @@ impl<C: Course> CourseTrack<C> {
         }
     }
 
+    /// Takes an element. Of cuts on one and the same place the first stands for all, however many a CL file has there.
     fn push(&mut self, line: u64, what: ElementKind, ends: [ToolPlace; 2], feed: Option<f64>) {
         self.approach.clear();
+        if ends[0] == ends[1]
+            && let ElementKind::Cut = what
+            && self.elements.back().is_some_and(|last| self.lingers(last, &ends[1], feed))
+        {
+            return;
+        }
         self.elements.push_back(Element {
             line,
             what,
@@ -346,6 +356,15 @@ impl<C: Course> CourseTrack<C> {
             ends: true,
             near: FAR,
         });
+    }
+
+    /// Whether `last` is a cut that stands at `place` with all that is asked for now.
+    fn lingers(&self, last: &Element, place: &ToolPlace, feed: Option<f64>) -> bool {
+        matches!(last.what, ElementKind::Cut)
+            && last.ends
+            && [last.from, last.to] == [*place; 2]
+            && last.feed == feed
+            && Arc::ptr_eq(&last.asked, &self.asked)
     }
 
     fn take_event(&mut self, line: u64, event: ProgramEvent) {

@@ -129,6 +129,18 @@ fn a_plugin_that_does_not_return_is_stopped() {
 }
 
 #[test]
+fn the_function_that_does_not_return_is_named_and_no_other() {
+    for (fault, function) in
+        [("OPEN_LOOPS", "open"), ("FORMAT_LOOPS", "format"), ("SENTENCE_LOOPS", "last_error")]
+    {
+        let (done, folder) = post_with(fault, &["-o", "part.nc", "--plugin-seconds", "0.3"]);
+        let message = format!("in the middle of its work (`{function}` of ");
+        assert!(done.err.contains(&message), "{fault}: {}", done.err);
+        refused(fault, &done, &folder);
+    }
+}
+
+#[test]
 fn a_close_that_fails_is_told_once_and_waited_for_once() {
     // The program was whole before that.
     for (fault, message) in [
@@ -158,10 +170,12 @@ fn a_close_that_fails_is_told_once_and_waited_for_once() {
 }
 
 /// The command is killed while its plugin stands in the command's group: the plugin ends, and nobody else there.
+#[cfg(target_os = "linux")]
 #[test]
 fn a_plugin_that_left_its_group_ends_with_the_command_and_takes_nobody_along() {
     let plugins = hostile("LEAVES_GROUP");
     let mut bystander = Command::new("sleep").arg("60").process_group(0).spawn().unwrap();
+    let path = plugins.path().to_str().unwrap().to_owned();
     let mut posting = command()
         .args(["-m", "ac-trunnion", "--dialect", "hostile", "-o", "-"])
         .arg(root().join(sample("blade.cls")))
@@ -173,17 +187,30 @@ fn a_plugin_that_left_its_group_ends_with_the_command_and_takes_nobody_along() {
         .spawn()
         .unwrap();
     let mut heard = BufReader::new(posting.stderr.take().unwrap()).lines();
-    assert!(heard.any(|line| line.unwrap() == "left"));
+    assert!(heard.any(|line| line.unwrap() == "plugin `hostile` prints: left"));
+    assert!(runs(&path));
     posting.kill().unwrap();
     posting.wait().unwrap();
-    // The plugin holds the same standard error until it ends.
-    let (tell, told) = std::sync::mpsc::channel();
-    std::thread::spawn(move || tell.send(heard.count()));
-    let ended = told.recv_timeout(Duration::from_secs(20));
+    let killed = std::time::Instant::now();
+    while runs(&path) && killed.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let ended = !runs(&path);
     let stands = bystander.try_wait().unwrap().is_none();
     bystander.kill().unwrap();
     bystander.wait().unwrap();
-    assert!(ended.is_ok() && stands, "{ended:?} {stands}");
+    assert!(ended && stands, "{ended} {stands}");
+}
+
+/// Whether a plugin's process runs that was told of `path`.
+#[cfg(target_os = "linux")]
+fn runs(path: &str) -> bool {
+    let processes = fs::read_dir("/proc").unwrap().filter_map(Result::ok);
+    let mut words = processes.filter_map(|process| fs::read(process.path().join("cmdline")).ok());
+    words.any(|words| {
+        let words = String::from_utf8_lossy(&words);
+        words.starts_with("post-plugin") && words.contains(path)
+    })
 }
 
 #[test]
@@ -203,7 +230,8 @@ fn a_trusted_plugin_that_dies_is_named_and_leaves_no_file() {
     for (fault, signal) in [("SEGV", 11), ("ABORT", 6), ("DIVIDES", 8), ("DEEP", 11)] {
         let arguments = ["--no-isolate", "-o", "part.nc", "--summary", "part.json"];
         let (done, folder) = post_with(fault, &arguments);
-        let message = format!("): the command died of signal {signal} in the middle of its work;");
+        let message =
+            format!("): the command died of signal {signal} in the middle of its work (`write`);");
         assert!(done.err.contains(&message), "{fault}: {}", done.err);
         assert!(done.err.contains("error[plugin]: plugin `hostile` ("), "{fault}: {}", done.err);
         assert_eq!(done.code, 1, "{fault}");
@@ -234,7 +262,42 @@ fn what_a_plugin_prints_is_no_part_of_the_program() {
     let (named, _) = post_with("PRINTS", &["-q", "-o", "/dev/stdout"]);
     assert_eq!((named.code, &named.out), (0, &done.out), "{}", named.err);
     // It is not lost either.
-    assert!(done.err.contains("G0 Z-500\n"), "{}", done.err);
+    assert!(done.err.contains("plugin `hostile` prints: G0 Z-500\n"), "{}", done.err);
+}
+
+#[test]
+fn what_a_plugin_prints_is_no_message_of_the_command() {
+    let (done, _) = post_with("FORGES", &["-q", "-o", "part.nc"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let forged = "plugin `hostile` prints: error[travel]: X is \\u{1b}[2Jpast its travel\n\
+                  plugin `hostile` prints: --> part.nc:1\n";
+    assert!(done.err.contains(forged), "{}", done.err);
+    let is_told = |line: &str| line.starts_with("plugin `hostile` prints: ");
+    assert!(done.err.lines().all(|line| is_told(line) || !line.contains("part.nc:1")));
+    assert!(!done.err.contains('\u{1b}'), "{}", done.err);
+}
+
+#[test]
+fn a_plugin_that_prints_without_end_is_cut_short_and_waits_for_nobody() {
+    let (done, folder) = post_with("PRINTS_ON", &["-q", "-o", "part.nc"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    let part = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    assert!(part.starts_with("G0 X1\n"), "{part}");
+    let told = done.err.lines().filter_map(|line| line.strip_prefix("plugin `hostile` prints: "));
+    let lines: Vec<&str> = told.collect();
+    assert_eq!(lines[0], "0 is said");
+    assert_eq!(*lines.last().unwrap(), "(no more is shown than 64 KiB)");
+    assert!(lines.len() < 8000, "{}", lines.len());
+}
+
+/// Whoever waits for the end of the command's messages does not wait for what a plugin has left behind.
+#[test]
+fn what_a_plugin_leaves_running_does_not_hold_the_command_s_messages_open() {
+    let begun = std::time::Instant::now();
+    let (done, _) = post_with("LEAVES_A_PRINTER", &["-q", "-o", "part.nc"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    // It prints for ten seconds.
+    assert!(begun.elapsed().as_secs_f64() < 8.0, "{:?}", begun.elapsed());
 }
 
 #[test]

@@ -2,8 +2,11 @@
 
 use std::cell::Cell;
 use std::path::PathBuf;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::float_mode::FloatMode;
+use crate::function::Function;
 use crate::working_folder::WorkingFolder;
 
 /// A library that was opened from a file. It stays for ever, like the library itself.
@@ -23,15 +26,32 @@ pub(crate) struct Caller {
     stranger: Option<(&'static LoadedLibrary, WorkingFolder)>,
 }
 
-thread_local! {
-    /// The library that is at work on this thread.
-    static AT_WORK: Cell<Option<&'static LoadedLibrary>> = const { Cell::new(None) };
+/// A library in one of its functions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtWork {
+    pub(crate) library: &'static LoadedLibrary,
+    #[cfg_attr(not(unix), expect(dead_code, reason = "no crash is seen there"))]
+    pub(crate) function: Function,
 }
+
+thread_local! {
+    static AT_WORK: Cell<Option<AtWork>> = const { Cell::new(None) };
+}
+
+/// Where another process reads which function this one is in, by its number.
+static SHARED: OnceLock<&AtomicU64> = OnceLock::new();
 
 /// The library that is at work on this thread.
 #[cfg(unix)]
-pub(crate) fn at_work() -> Option<&'static LoadedLibrary> {
+pub(crate) fn at_work() -> Option<AtWork> {
     AT_WORK.get()
+}
+
+/// From here on the function that this process is in stands in `place` too, which another process reads.
+#[cfg(unix)]
+pub(crate) fn share_function(place: &'static AtomicU64) {
+    // There is one host.
+    let _ = SHARED.set(place);
 }
 
 impl Caller {
@@ -42,30 +62,37 @@ impl Caller {
 
     /// Runs `call`, which is nothing but a call into the library. What the processor does with numbers is restored
     /// behind it, and so is the working folder.
-    pub(crate) fn call<R>(&self, call: impl FnOnce() -> R) -> R {
+    pub(crate) fn call<R>(&self, function: Function, call: impl FnOnce() -> R) -> R {
         let Some((library, folder)) = &self.stranger else {
             return call();
         };
-        let result = enter(library, call);
+        let result = enter(library, function, call);
         folder.restore();
         result
     }
 
     /// As [`Caller::call`], for calls so short that the system would take longer than they do: the folder waits for the
     /// next call, and a session ends with one.
-    pub(crate) fn short_call<R>(&self, call: impl FnOnce() -> R) -> R {
+    pub(crate) fn short_call<R>(&self, function: Function, call: impl FnOnce() -> R) -> R {
         match &self.stranger {
-            Some((library, _)) => enter(library, call),
+            Some((library, _)) => enter(library, function, call),
             None => call(),
         }
     }
 }
 
-fn enter<R>(library: &'static LoadedLibrary, call: impl FnOnce() -> R) -> R {
-    let before = AT_WORK.replace(Some(library));
+fn enter<R>(library: &'static LoadedLibrary, function: Function, call: impl FnOnce() -> R) -> R {
+    let before = AT_WORK.replace(Some(AtWork { library, function }));
+    let tell = |number| {
+        if let Some(place) = SHARED.get() {
+            place.store(number, Ordering::Relaxed);
+        }
+    };
+    tell(function.number());
     let mode = FloatMode::now();
     let result = call();
     mode.restore();
+    tell(before.map_or(0, |before| before.function.number()));
     AT_WORK.set(before);
     result
 }

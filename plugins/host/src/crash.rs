@@ -11,7 +11,7 @@ use std::ptr::null_mut;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicPtr, Ordering};
 
-use crate::call::at_work;
+use crate::call::{AtWork, at_work};
 
 /// What a library dies of.
 const DEADLY: [c_int; 5] = [libc::SIGSEGV, libc::SIGBUS, libc::SIGILL, libc::SIGFPE, libc::SIGABRT];
@@ -70,7 +70,7 @@ extern "C" fn crashed(signal: c_int) {
         unsafe { libc::write(libc::STDERR_FILENO, text.as_ptr().cast(), text.len()) };
     };
     let at_work = at_work();
-    if let Some(library) = at_work {
+    if let Some(AtWork { library, function }) = at_work {
         say(b"error[plugin]: plugin `");
         say(library.name.as_bytes());
         say(b"` (");
@@ -78,7 +78,9 @@ extern "C" fn crashed(signal: c_int) {
         say(b"): the command died of signal ");
         let digits = [b'0' + (signal / 10 % 10) as u8, b'0' + (signal % 10) as u8];
         say(digits.strip_prefix(b"0").unwrap_or(&digits));
-        say(b" in the middle of its work; nothing was written\n");
+        say(b" in the middle of its work (`");
+        say(function.name().as_bytes());
+        say(b"`); nothing was written\n");
         say(b"help: without --no-isolate its event and line are told too\n");
     }
     for place in &FILES {

@@ -10,6 +10,7 @@ use post_plugin::{OptionKind, OptionSpec, Value};
 
 use crate::call::Caller;
 use crate::described::{Described, FunctionTable, is_name};
+use crate::function::Function;
 use crate::options::check;
 use crate::shown::{is_odd, quoted, sentence};
 use crate::{GivenValue, Reason};
@@ -205,7 +206,7 @@ unsafe fn declared(plugin: &PostPlugin, caller: &Caller) -> Result<&'static [Opt
     let mut specs: Vec<Result<OptionSpec, String>> = Vec::new();
     let host = (&raw mut specs).cast();
     // SAFETY: `emit` takes the vector.
-    caller.call(|| unsafe { describe(host, emit) });
+    caller.call(Function::Describe, || unsafe { describe(host, emit) });
     judge_options(specs)
 }
 

@@ -84,8 +84,8 @@ fn culprit() -> Option<PluginFault> {
         path: Some(library.path.clone()),
         reason: Reason::Nonsense { message: message.to_owned() },
     };
-    if let Some(library) = at_work() {
-        return Some(fault(library, "it ended the command in the middle of its work"));
+    if let Some(at_work) = at_work() {
+        return Some(fault(at_work.library, "it ended the command in the middle of its work"));
     }
     let message = "the command was ended in the middle of its work, by a thread of this plugin";
     match opened().as_slice() {

@@ -14,6 +14,7 @@ pub mod examples;
 mod fault;
 mod finder;
 mod float_mode;
+mod function;
 #[cfg(unix)]
 mod isolation;
 #[cfg(not(unix))]

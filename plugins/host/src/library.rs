@@ -9,6 +9,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use post_plugin::raw::PostPlugin;
 
 use crate::call::{Caller, LoadedLibrary};
+use crate::function::Function;
 use crate::judge::judge;
 use crate::leave::library_opened;
 use crate::library_file::LibraryFile;
@@ -52,7 +53,8 @@ pub(crate) fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
     library_opened(loaded);
     let caller = Caller::new(Some(loaded));
     // SAFETY: the library's initialisers run; the user named this file as one to be run.
-    let library = caller.call(|| unsafe { libloading::Library::new(file.path.as_os_str()) });
+    let library = caller
+        .call(Function::Opening, || unsafe { libloading::Library::new(file.path.as_os_str()) });
     let library = library.map_err(|error| system(error.to_string()))?;
     // SAFETY: only the symbol's address is taken here; what it leads to is judged below.
     let found = unsafe { library.get::<*const PostPlugin>(symbol.as_bytes()) };
@@ -78,7 +80,7 @@ pub(crate) fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
     }
     // SAFETY: judged above.
     if let Some(loaded) = unsafe { (*exported).loaded } {
-        caller.call(|| unsafe { loaded() });
+        caller.call(Function::Loaded, || unsafe { loaded() });
     }
     Ok(Plugin { library: Some(loaded), hash: Some(file.hash), ..described.into() })
 }

@@ -10,6 +10,7 @@ use post_plugin::{Batch, Promise, Setup, VocabularyWord, WriteFault};
 use crate::call::Caller;
 use crate::described::FunctionTable;
 use crate::ends::Ends;
+use crate::function::Function;
 #[cfg(unix)]
 use crate::isolation::Progress;
 use crate::sink::{MOST_TEXT, message, with_sink};
@@ -56,7 +57,7 @@ impl LibraryDialect {
             raw::with_setup(setup, |setup| {
                 if let Some(open) = table.open {
                     // SAFETY: the setup and the sink live for the call.
-                    ctx = caller.call(|| unsafe { open(setup, sink) });
+                    ctx = caller.call(Function::Open, || unsafe { open(setup, sink) });
                 }
             });
         });
@@ -82,10 +83,9 @@ impl LibraryDialect {
     pub(crate) fn raw_format(&self) -> Result<PostFormat, String> {
         let mut raw = PostFormat::EMPTY;
         // SAFETY: the context is open and `raw` lives for the call.
-        let failed = self
-            .table
-            .format
-            .is_none_or(|format| self.caller.call(|| unsafe { format(self.ctx, &mut raw) }) != 0);
+        let failed = self.table.format.is_none_or(|format| {
+            self.caller.call(Function::Format, || unsafe { format(self.ctx, &mut raw) }) != 0
+        });
         if failed {
             return Err(self.last_error());
         }
@@ -104,7 +104,7 @@ impl LibraryDialect {
         };
         let asked = vocabulary::taken(|host, emit| {
             // SAFETY: the context is open, and `emit` takes `host`.
-            self.caller.call(|| unsafe { vocabulary(self.ctx, host, emit) })
+            self.caller.call(Function::Vocabulary, || unsafe { vocabulary(self.ctx, host, emit) })
         });
         match asked {
             (0, words) => words,
@@ -119,7 +119,7 @@ impl LibraryDialect {
         let mut told = Vec::new();
         let code = with_sink(&mut told, MOST_TEXT, |sink| {
             // SAFETY: the context is open and the sink lives for the call.
-            self.caller.call(|| unsafe { relies_on(self.ctx, sink) })
+            self.caller.call(Function::ReliesOn, || unsafe { relies_on(self.ctx, sink) })
         })?;
         if code != 0 {
             return Err(self.last_error());
@@ -133,7 +133,7 @@ impl LibraryDialect {
         message(|sink| {
             if let Some(last_error) = self.table.last_error {
                 // SAFETY: the context is open and the sink lives for the call.
-                self.caller.call(|| unsafe { last_error(self.ctx, sink) });
+                self.caller.call(Function::LastError, || unsafe { last_error(self.ctx, sink) });
             }
         })
     }
@@ -154,7 +154,7 @@ impl LibraryDialect {
         let written = self.ends.tell(count, |ends| {
             let ends = ends.as_mut_ptr();
             with_sink(out, MOST_TEXT, |sink| {
-                caller.call(|| unsafe { write(ctx, events, count, sink, ends) })
+                caller.call(Function::Write, || unsafe { write(ctx, events, count, sink, ends) })
             })
         });
         // They point into the batch, which is the caller's.
@@ -222,7 +222,7 @@ impl Drop for LibraryDialect {
     fn drop(&mut self) {
         if let Some(close) = self.table.close {
             // SAFETY: the context is open, and this is its last use.
-            self.caller.call(|| unsafe { close(self.ctx) });
+            self.caller.call(Function::Close, || unsafe { close(self.ctx) });
         }
     }
 }

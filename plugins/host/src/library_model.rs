@@ -12,6 +12,7 @@ use post_plugin::{Curve, Deviation, Tolerance};
 use crate::call::Caller;
 use crate::described::FunctionTable;
 use crate::float_mode::FloatMode;
+use crate::function::Function;
 use crate::sink::message;
 use crate::{GivenValue, Plugin};
 
@@ -46,7 +47,8 @@ impl LibraryModel {
         let refusal = message(|sink| {
             if let Some(open) = table.open {
                 // SAFETY: the options and the sink live for the call.
-                ctx = caller.call(|| unsafe { open(pairs.as_ptr(), pairs.len(), sink) });
+                ctx = caller
+                    .call(Function::Open, || unsafe { open(pairs.as_ptr(), pairs.len(), sink) });
             }
         });
         if ctx.is_null() {
@@ -60,7 +62,7 @@ impl LibraryModel {
         message(|sink| {
             if let Some(last_error) = self.table.last_error {
                 // SAFETY: the context is open and the sink lives for the call.
-                self.caller.call(|| unsafe { last_error(self.ctx, sink) });
+                self.caller.call(Function::LastError, || unsafe { last_error(self.ctx, sink) });
             }
         })
     }
@@ -79,7 +81,7 @@ impl LibraryModel {
         // SAFETY: the context is open, all pointers live for the call and hold `count` things.
         let failed = self.table.value.is_none_or(|value| {
             let call = || unsafe { value(self.ctx, curve, count, ts.as_ptr(), out.as_mut_ptr()) };
-            self.caller.short_call(call) != 0
+            self.caller.short_call(Function::Value, call) != 0
         });
         if failed { Err(self.last_error()) } else { Ok(()) }
     }
@@ -105,7 +107,7 @@ impl LibraryModel {
         let host = (&raw mut bridge).cast();
         let failed = self.table.fit.is_none_or(|fit| {
             let call = || unsafe { fit(self.ctx, tolerance, ask, host, &mut curve) };
-            self.caller.call(call) != 0
+            self.caller.call(Function::Fit, call) != 0
         });
         if let Some(payload) = bridge.panic {
             // The panic was ours, not the plugin's.
@@ -125,7 +127,7 @@ impl Drop for LibraryModel {
     fn drop(&mut self) {
         if let Some(close) = self.table.close {
             // SAFETY: the context is open, and this is its last use.
-            self.caller.call(|| unsafe { close(self.ctx) });
+            self.caller.call(Function::Close, || unsafe { close(self.ctx) });
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The connection of two processes: messages of a length, one at a time.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::os::fd::{AsFd as _, BorrowedFd};
 use std::os::unix::net::UnixStream;
 
 use super::wire::Wire;
@@ -34,13 +35,14 @@ impl Channel {
         self.stream.write_all(&self.sent)
     }
 
-    /// The next message. `wait` is asked each time that it is not there yet, and may give it up.
+    /// The next message. `wait` comes ahead of each look for more of it, and may give it up.
     pub(crate) fn receive(
         &mut self,
-        mut wait: impl FnMut() -> io::Result<()>,
+        mut wait: impl FnMut(BorrowedFd<'_>) -> io::Result<()>,
     ) -> io::Result<&[u8]> {
         let mut filled = 0;
         loop {
+            wait(self.stream.as_fd())?;
             match self.stream.read(&mut self.received[filled..]) {
                 Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
                 Ok(count) => filled += count,
@@ -64,7 +66,6 @@ impl Channel {
                     self.received.resize(whole, 0);
                 }
             }
-            wait()?;
         }
     }
 }

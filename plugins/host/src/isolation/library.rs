@@ -9,6 +9,7 @@ use super::message::{Description, Request};
 use super::process::Process;
 use crate::call::LoadedLibrary;
 use crate::described::FunctionTable;
+use crate::function::Function;
 use crate::judge::{judge_name, judge_options};
 use crate::library_file::LibraryFile;
 use crate::shown::sentence;
@@ -37,7 +38,7 @@ pub(crate) fn open(
     file: LibraryFile,
     limits: Limits,
 ) -> Result<Plugin, Reason> {
-    let (process, told) = started(&file.path, limits)?;
+    let (process, told) = started(name, &file.path, limits)?;
     if told.hash != file.hash || !file.is_unchanged() {
         let message = "its file was changed while it was opened".to_owned();
         return Err(Reason::Open { message });
@@ -72,15 +73,16 @@ pub(crate) fn open(
 }
 
 /// A process that has opened the library, and what that is.
-fn started(path: &Path, limits: Limits) -> Result<(Process, Description), Reason> {
+fn started(name: &str, path: &Path, limits: Limits) -> Result<(Process, Description), Reason> {
     let cannot = |error: io::Error| Reason::Open {
         message: format!(
             "no process of its own can be started: {error} (--no-isolate does without)"
         ),
     };
-    let mut process = Process::start(path, limits).map_err(cannot)?;
+    let mut process = Process::start(name, path, limits).map_err(cannot)?;
     let mut left = limits.call;
-    let told: Result<Result<Description, Reason>, String> = process.answer("opening", &mut left);
+    let told: Result<Result<Description, Reason>, String> =
+        process.answer(Function::Opening, &mut left);
     let told = told.map_err(|message| Reason::Nonsense { message })??;
     Ok((process, told))
 }
@@ -92,7 +94,7 @@ impl IsolatedLibrary {
         if let Some(process) = idle {
             return Ok(process);
         }
-        let (process, told) = started(&self.path, self.limits)?;
+        let (process, told) = started(&self.name, &self.path, self.limits)?;
         if told.hash != self.hash {
             let message = "it is open already, and its file was changed since".to_owned();
             return Err(Reason::Open { message });

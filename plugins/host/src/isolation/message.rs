@@ -4,6 +4,7 @@ use post_plugin::raw::PostFormat;
 use post_plugin::{Curve, Deviation, OptionSpec, Tolerance};
 
 use super::wire::Wire;
+use crate::function::Function;
 use crate::{GivenValue, ProgramSetup, Reason};
 
 /// What a library's process is asked. A batch follows [`Request::Write`] as [`post_plugin::Batch::put_bytes`] has it.
@@ -98,16 +99,16 @@ impl Wire for Request {
 }
 
 impl Request {
-    /// The function of the contract that it calls.
-    pub(crate) fn function(&self) -> &'static str {
+    /// The function of the contract that it is about; the library may be in another one that goes with it.
+    pub(crate) fn function(&self) -> Function {
         match self {
-            Request::Dialect(_) | Request::Model(_) => "open",
-            Request::Write => "write",
-            Request::Vocabulary => "vocabulary",
-            Request::ReliesOn => "relies_on",
-            Request::Fit(_) => "fit",
-            Request::Value(..) => "value",
-            Request::Close => "close",
+            Request::Dialect(_) | Request::Model(_) => Function::Open,
+            Request::Write => Function::Write,
+            Request::Vocabulary => Function::Vocabulary,
+            Request::ReliesOn => Function::ReliesOn,
+            Request::Fit(_) => Function::Fit,
+            Request::Value(..) => Function::Value,
+            Request::Close => Function::Close,
         }
     }
 }

@@ -10,11 +10,14 @@
 //! that the other side is gone. Of a process that has died only memory can tell how far it came, and so which event it
 //! died of.
 //!
+//! What it prints goes through a pipe of its own, and is told as what it is.
+//!
 //! A library's process is as little believed as the library: whatever it tells is judged by the host again.
 
 mod channel;
 mod library;
 mod message;
+mod printed;
 mod process;
 mod progress;
 mod served;

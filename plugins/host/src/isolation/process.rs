@@ -2,14 +2,16 @@
 //! where it dies.
 
 use std::io::{self, ErrorKind};
-use std::os::fd::OwnedFd;
+use std::os::fd::{BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
 use rustix::process::{
     Pid, Signal, WaitId, WaitIdOptions, kill_process, kill_process_group, waitid,
 };
@@ -17,9 +19,11 @@ use rustix::process::{
 use super::Limits;
 use super::channel::Channel;
 use super::message::Request;
+use super::printed::Printed;
 use super::progress::Progress;
 use super::served::{LIBRARY, SERVE};
 use super::wire::Wire;
+use crate::function::Function;
 
 /// Between two looks at a process that does not answer.
 const LOOK: Duration = Duration::from_millis(100);
@@ -57,18 +61,19 @@ pub(crate) struct Process {
     child: Child,
     channel: Channel,
     progress: Progress,
+    printed: Printed,
     limits: Limits,
     /// Why it is not asked any more.
     dead: Option<String>,
 }
 
 impl Process {
-    /// Starts this program again, to open the library at `path`. Its first message says what that is.
-    pub(crate) fn start(path: &Path, limits: Limits) -> io::Result<Self> {
+    /// Starts this program again, to open the library at `path`, which is called `name`. Its first message says what that is.
+    pub(crate) fn start(name: &str, path: &Path, limits: Limits) -> io::Result<Self> {
         let (ours, theirs) = UnixStream::pair()?;
-        ours.set_read_timeout(Some(LOOK))?;
         ours.set_write_timeout(Some(limits.call))?;
         let (progress, shared) = Progress::new()?;
+        let (printed, prints) = Printed::new(name)?;
         // A name by which it is found whatever has become of its file.
         let this = match cfg!(target_os = "linux") {
             true => "/proc/self/exe".into(),
@@ -77,7 +82,7 @@ impl Process {
         let mut command = Command::new(this);
         command.arg0(LIBRARY).arg(SERVE).arg(path).arg(limits.memory.to_string());
         command.arg(std::process::id().to_string());
-        command.stdin(OwnedFd::from(theirs)).stdout(shared).stderr(Stdio::inherit());
+        command.stdin(OwnedFd::from(theirs)).stdout(shared).stderr(prints);
         // Ctrl-C is for the command, which ends it.
         command.process_group(0);
         let mut live = live();
@@ -89,6 +94,7 @@ impl Process {
             child,
             channel: Channel::new(ours),
             progress,
+            printed,
             limits,
             dead: None,
         })
@@ -119,7 +125,7 @@ impl Process {
     /// Sends what `fill` appends.
     pub(crate) fn send(
         &mut self,
-        function: &str,
+        function: Function,
         fill: impl FnOnce(&mut Vec<u8>),
     ) -> Result<(), String> {
         if let Some(dead) = &self.dead {
@@ -131,24 +137,31 @@ impl Process {
     /// Takes the next message, for which it has `left`.
     pub(crate) fn answer<R: Wire>(
         &mut self,
-        function: &str,
+        function: Function,
         left: &mut Duration,
     ) -> Result<R, String> {
         if let Some(dead) = &self.dead {
             return Err(dead.clone());
         }
         let asked = Instant::now();
-        let (child, most) = (&self.child, *left);
-        let received = self.channel.receive(|| match () {
-            () if asked.elapsed() > most => Err(ErrorKind::TimedOut.into()),
-            // What it has started may hold the connection open.
-            () if has_ended(child) => Err(ErrorKind::UnexpectedEof.into()),
-            () => Ok(()),
+        let (child, printed, most) = (&self.child, &mut self.printed, *left);
+        let received = self.channel.receive(|connection| {
+            while !is_heard(connection, printed)? {
+                match () {
+                    () if asked.elapsed() > most => return Err(ErrorKind::TimedOut.into()),
+                    // What it has started may hold the connection open.
+                    () if has_ended(child) => return Err(ErrorKind::UnexpectedEof.into()),
+                    () => {}
+                }
+            }
+            Ok(())
         });
         let answer = received.and_then(|mut bytes| {
             let answer = R::take(&mut bytes).filter(|_| bytes.is_empty());
             answer.ok_or_else(|| ErrorKind::InvalidData.into())
         });
+        // It hands on what it has printed before it answers.
+        self.printed.tell();
         *left = left.saturating_sub(asked.elapsed());
         answer.map_err(|error| self.died(function, &error))
     }
@@ -170,7 +183,7 @@ impl Process {
     }
 
     /// It answers no more: says why, and ends it with what it has started.
-    fn died(&mut self, function: &str, error: &io::Error) -> String {
+    fn died(&mut self, function: Function, error: &io::Error) -> String {
         let late = matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock);
         let hung_up = Instant::now();
         while !late && !has_ended(&self.child) && hung_up.elapsed() < ENDS {
@@ -178,6 +191,7 @@ impl Process {
         }
         let by_itself = has_ended(&self.child);
         let status = self.end();
+        let function = self.progress.last_function().unwrap_or(function).name();
         let Limits { call, memory } = self.limits;
         let how = match status {
             _ if late => {
@@ -207,6 +221,12 @@ impl Process {
 
     /// Ends it with what it has started; says how it ended.
     fn end(&mut self) -> Option<ExitStatus> {
+        let status = self.kill();
+        self.printed.end();
+        status
+    }
+
+    fn kill(&mut self) -> Option<ExitStatus> {
         let mut live = live();
         if let Some(process) = Pid::from_raw(self.child.id() as i32)
             && live.contains(&process)
@@ -232,6 +252,22 @@ impl Drop for Process {
     fn drop(&mut self) {
         self.end();
     }
+}
+
+/// Waits for more of an answer and for what is printed, which is told; whether there is more of an answer now.
+fn is_heard(connection: BorrowedFd<'_>, printed: &mut Printed) -> io::Result<bool> {
+    let look = Timespec { tv_sec: 0, tv_nsec: LOOK.subsec_nanos().into() };
+    let places = [connection, printed.waits_at().unwrap_or(connection)];
+    let mut looked = places.map(|place| PollFd::from_borrowed_fd(place, PollFlags::IN));
+    match poll(&mut looked, Some(&look)) {
+        Err(Errno::INTR) => return Ok(false),
+        found => found?,
+    };
+    let [answers, prints] = looked.map(|place| !place.revents().is_empty());
+    if prints {
+        printed.tell();
+    }
+    Ok(answers)
 }
 
 /// It has ended, and nobody has waited for it yet.

@@ -1,18 +1,24 @@
-//! Where the events of a batch end, in memory that two processes share: when the one that writes is no more, the other
-//! sees how far it came.
+//! Where the events of a batch end and which function runs, in memory that two processes share: when the one that writes
+//! is no more, the other sees how far it came.
 
 #![allow(unsafe_code)]
 
 use std::io;
+use std::mem::ManuallyDrop;
 use std::os::fd::{AsFd, OwnedFd};
 use std::ptr::NonNull;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rustix::mm::{MapFlags, ProtFlags, mmap, munmap};
+
+use crate::call::share_function;
+use crate::function::Function;
 
 /// Events of which the end is shared; of the rest of a longer batch it is not known.
 const EVENTS: usize = 1 << 16;
 
-const BYTES: usize = EVENTS * size_of::<u64>();
+/// Behind the ends stands the number of the function.
+const BYTES: usize = (EVENTS + 1) * size_of::<u64>();
 
 /// The shared memory.
 #[derive(Debug)]
@@ -42,6 +48,25 @@ impl Progress {
         let ends = unsafe { mmap(std::ptr::null_mut(), BYTES, protection, shared, file, 0) }?;
         let ends = NonNull::new(ends.cast()).ok_or(io::ErrorKind::OutOfMemory)?;
         Ok(Self { ends })
+    }
+
+    /// From here on the function that this process is in stands in the memory behind `file`, which stays for ever.
+    pub(crate) fn share_function(file: impl AsFd) -> io::Result<()> {
+        let shared = ManuallyDrop::new(Self::of(file)?);
+        // SAFETY: within the memory, which is never given back, and aligned. Ends are written in front of it alone.
+        share_function(unsafe { shared.function().as_ref() });
+        Ok(())
+    }
+
+    /// The function that the other process was in last; none if it was in none.
+    pub(crate) fn last_function(&self) -> Option<Function> {
+        // SAFETY: within the memory. The other process may write still.
+        Function::from_number(unsafe { self.function().as_ref() }.load(Ordering::Relaxed))
+    }
+
+    fn function(&self) -> NonNull<AtomicU64> {
+        // SAFETY: within the memory, behind the ends.
+        unsafe { self.ends.add(EVENTS) }.cast()
     }
 
     /// Room for the ends of `count` events, none of them told; none if there are too many.

@@ -48,9 +48,10 @@ pub fn serve_if_asked() {
 fn serve(path: &Path, memory: u64, host: u64) -> io::Result<()> {
     let connection = io::stdin().as_fd().try_clone_to_owned()?;
     let shared = io::stdout().as_fd().try_clone_to_owned()?;
-    // What it reads is nothing, and what it prints is no part of a program.
+    // What it reads is nothing, and what it prints is no part of a program: the host tells it.
     rustix::stdio::dup2_stdin(File::open("/dev/null")?)?;
     rustix::stdio::dup2_stdout(io::stderr())?;
+    Progress::share_function(&shared)?;
     let progress = Progress::of(shared)?;
     watch(host)?;
     limit(memory)?;
@@ -130,7 +131,7 @@ impl Server {
     /// Does the next thing that it is asked.
     fn serve(&mut self, plugin: &Plugin) -> io::Result<()> {
         let invalid = || io::Error::from(io::ErrorKind::InvalidData);
-        let mut bytes = self.channel.receive(|| Ok(()))?;
+        let mut bytes = self.channel.receive(|_| Ok(()))?;
         let request = Request::take(&mut bytes).ok_or_else(invalid)?;
         if let Request::Write = request {
             self.batch.from_bytes(bytes).ok_or_else(invalid)?;
@@ -227,7 +228,7 @@ impl Server {
 /// The deviations at some places, as the host computes them.
 fn wanted(channel: &mut Channel, places: &[f64]) -> Option<Deviations> {
     channel.send(|to| Fitted::Wants(places.to_vec()).put(to)).ok()?;
-    let mut bytes = channel.receive(|| Ok(())).ok()?;
+    let mut bytes = channel.receive(|_| Ok(())).ok()?;
     Deviations::take(&mut bytes)
 }
 

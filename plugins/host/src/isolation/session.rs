@@ -9,6 +9,7 @@ use super::library::IsolatedLibrary;
 use super::message::{Deviations, DialectOpened, Fitted, Request, Written};
 use super::process::Process;
 use super::wire::Wire;
+use crate::function::Function;
 use crate::shown::sentence;
 use crate::{GivenValue, ProgramSetup, Reason};
 
@@ -167,15 +168,15 @@ impl IsolatedModel {
     ) -> Result<Result<Curve, String>, String> {
         let mut left = self.session.library.limits().call;
         let process = self.session.process()?;
-        process.send("fit", |to| Request::Fit(*tolerance).put(to))?;
+        process.send(Function::Fit, |to| Request::Fit(*tolerance).put(to))?;
         loop {
-            match process.answer("fit", &mut left)? {
+            match process.answer(Function::Fit, &mut left)? {
                 Fitted::Answers(answer) => return Ok(answer.map(|curve| *curve)),
                 Fitted::Wants(places) => {
                     let count = places.len().min(MOST_PLACES);
                     let mut found: Deviations = vec![Deviation::default(); count];
                     deviation(&places[..count], &mut found);
-                    process.send("fit", |to| found.put(to))?;
+                    process.send(Function::Fit, |to| found.put(to))?;
                 }
             }
         }

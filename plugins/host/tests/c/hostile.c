@@ -148,6 +148,10 @@ __attribute__((constructor)) static void constructor(void) {
 static void *open_(const PostSetup *setup, const PostSink *error) {
     (void)error;
     words = (uint32_t)setup->words_len;
+#ifdef FAULT_OPEN_LOOPS
+    for (;;)
+        sum++;
+#endif
 #ifdef FAULT_OPEN
     return NULL;
 #endif
@@ -159,6 +163,23 @@ static void *open_(const PostSetup *setup, const PostSink *error) {
 #endif
 #ifdef FAULT_PRINTS
     printf("G0 Z-500\n");
+#endif
+#ifdef FAULT_FORGES
+    fprintf(stderr, "error[travel]: X is \033[2Jpast its travel\n  --> part.nc:1\n");
+#endif
+#ifdef FAULT_PRINTS_ON
+    for (int line = 0; line < 300000; line++)
+        fprintf(stderr, "%d is said\n", line);
+#endif
+#ifdef FAULT_LEAVES_A_PRINTER
+    if (!fork()) {
+        setsid();
+        for (int line = 0; line < 100; line++) {
+            dprintf(2, "still here\n");
+            usleep(100000);
+        }
+        _exit(0);
+    }
 #endif
 #ifdef FAULT_EXIT_THREAD
     pthread_t thread;
@@ -177,6 +198,10 @@ static int32_t format(void *ctx, PostFormat *f) {
     f->words_len = words;
     memset(f->words, 3, words);
     f->inverse_time = -1;
+#ifdef FAULT_FORMAT_LOOPS
+    for (;;)
+        sum++;
+#endif
 #ifdef FAULT_WORDS
     f->words_len = 4000000000u;
 #endif
@@ -235,7 +260,7 @@ static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSin
     for (long i = 0; i < 100000; i++)
         out->write(out->ctx, (const uint8_t *)flood, sizeof flood);
 #endif
-#ifdef FAULT_MESSAGE
+#if defined FAULT_MESSAGE || defined FAULT_SENTENCE_LOOPS
     return 0;
 #endif
 #ifdef FAULT_NAN
@@ -276,6 +301,10 @@ static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSin
 
 static void last_error(void *ctx, const PostSink *out) {
     (void)ctx, (void)out;
+#ifdef FAULT_SENTENCE_LOOPS
+    for (;;)
+        sum++;
+#endif
 #ifdef FAULT_MESSAGE
     const char *text = "\033[2J\033]0;owned\007 all\r\nis well";
     out->write(out->ctx, (const uint8_t *)text, strlen(text));

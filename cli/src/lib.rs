@@ -3,6 +3,7 @@
 
 pub mod arguments;
 pub mod failure;
+mod stack;
 pub mod terminal;
 
 use std::hint::black_box;
@@ -35,7 +36,7 @@ fn check_rounding() -> Result<(), CommandFault> {
 }
 
 /// Does `job`, tells why it failed, and ends the process. A process that was started for a library serves that instead.
-pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), CommandFault>) -> ! {
+pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), CommandFault> + Send) -> ! {
     post_host::serve_if_asked();
     files::delete_on_signals();
     #[cfg(unix)]
@@ -49,7 +50,7 @@ pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), CommandFault>) -> ! {
         told.findings(&[plugin_finder::diagnostic(fault, &[], None)]);
     });
     let done = check_rounding()
-        .and_then(|()| job(&session))
+        .and_then(|()| stack::with_room(|| job(&session)))
         .and_then(|()| Ok(terminal::all_printed(&session)?));
     let unclosed = session.isolation().map_or_else(Vec::new, |isolation| isolation.close_faults());
     let warnings = unclosed.iter().map(|fault| Diagnostic {

@@ -127,3 +127,19 @@ fn memory_of_looking_a_program_over_does_not_grow_with_it() {
         "{small} kB for 20,000 points, {large} kB for 240,000"
     );
 }
+
+/// A parser that finds little stack says that a good file is wrong.
+#[test]
+fn a_small_stack_of_the_shell_changes_nothing() {
+    let words = format!("{} -m ac-trunnion -o - tests/samples/blade.cls", common::BINARY);
+    let with = |limit: &str| {
+        let line = format!("ulimit -s {limit} && exec {words}");
+        common::run(common::command_as("sh").args(["-c", &line]), b"")
+    };
+    let plain = with("8192");
+    assert_eq!(plain.code, 0, "{}", plain.err);
+    for limit in ["256", "64"] {
+        let small = with(limit);
+        assert_eq!((small.code, &small.out), (0, &plain.out), "{limit}: {}", small.err);
+    }
+}

@@ -39,7 +39,8 @@ impl Unsaid<'_> {
         findings.extend(self.modes(finder, machine));
         findings.extend(self.contrary());
         findings.extend(self.retract());
-        findings.extend(self.own.then(|| self.end()).flatten());
+        findings.extend(self.unended());
+        findings.extend(self.own.then(|| self.left_in_force()).flatten());
         if plugin_finder::text(finder, machine, "tapping").as_deref() == Some("rigid") {
             findings.extend(self.bare_taps());
         }
@@ -182,21 +183,23 @@ impl Unsaid<'_> {
         Some(Diagnostic::error("rapid", message).at(self.at(*line)))
     }
 
-    /// That it ends, and what it leaves to whatever runs next.
-    pub fn end(&self) -> Option<Diagnostic> {
+    /// That no word ends it. A control without such a word ends with the file, and so does one that runs its lines one by
+    /// one.
+    fn unended(&self) -> Option<Diagnostic> {
         let last_line = self.last_line.filter(|_| self.report.blocks > 0)?;
-        let Some(end) = &self.report.end else {
-            // A control without such a word ends with the file, and so does one that runs its lines one by one.
-            if self.spoken.writes.has(Capabilities::COMMAND_A_LINE) {
-                return None;
-            }
-            self.spoken.words.iter().find(|word| word.meaning == Meaning::End)?;
-            let message = "no word of the program ends it: the control stops there with an alarm, or goes on in what stands behind it";
-            let help = "end it by the control's word: M30, M2, or M99 where it is called";
-            return Some(
-                self.graded("missing", message.to_owned()).help(help).at(self.at(last_line)),
-            );
-        };
+        if self.report.end.is_some() || self.spoken.writes.has(Capabilities::COMMAND_A_LINE) {
+            return None;
+        }
+        self.spoken.words.iter().find(|word| word.meaning == Meaning::End)?;
+        let message = "no word of the program ends it: the control stops there with an alarm, or goes on in what stands behind it";
+        let help = "end it by the control's word: M30, M2, or M99 where it is called; it may have been cut off";
+        Some(self.graded("missing", message.to_owned()).help(help).at(self.at(last_line)))
+    }
+
+    /// What it leaves to whatever runs next.
+    pub fn left_in_force(&self) -> Option<Diagnostic> {
+        self.last_line?;
+        let end = self.report.end.as_ref()?;
         let message = |modes: &str| {
             format!("the program ends with {modes} in force: whatever runs next begins so")
         };

@@ -185,7 +185,7 @@ pub fn look_over<'m>(
     let unsaid = Unsaid { name, report: &report, spoken: &control.spoken, own: false, last_line };
     found.extend(unsaid.findings(finder, machine));
     found.extend(unsaid.change());
-    found.extend(unsaid.end());
+    found.extend(unsaid.left_in_force());
     found.extend(nc_program::unknown_words(name, &report, machine));
     found.extend(beyond.findings(name));
     found.extend(beyond.part_place(machine, name));

@@ -204,3 +204,45 @@ fn beside_a_pole_no_feed_by_time_is_that_of_a_way_that_bows_aside_by_more() {
     let run = post_in(folder.path(), &["-m", "mine.toml", "part.cls", "-o", "part.nc", "--verify"]);
     assert_eq!(run.code, 0, "{}", run.err);
 }
+
+/// A control on which the length of the tool before stays on until the next one is called: the work offset is that of the
+/// tool which is in the spindle, 145 mm longer, and 0.22 mm aside.
+#[test]
+fn words_behind_a_tool_change_count_from_the_offset_of_the_tool_that_came() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "extends = \"vmc\"\nname = \"leans\"\ncontrol.dialect = \"isg\"\n[axis.Z]\nlinear = [0, -0.0015, 1]\n\
+                   [tools.1]\nlength = 185\n[tools.2]\nlength = 40\n";
+    let cl = "UNITS/MM\nLOADTL/2\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/-20,30,20\nFEDRAT/500,MMPM\nGOTO/-20,30,0\nRAPID\n\
+              GOTO/-20,30,50\nLOADTL/1\nSPINDL/RPM,4000,CLW\nRAPID\nGOTO/30,10,20\nFEDRAT/500,MMPM\nGOTO/30,10,0\nRAPID\n\
+              GOTO/30,10,50\nFINI\n";
+    fs::write(folder.path().join("mine.toml"), machine).unwrap();
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    let words = ["-m", "mine.toml", "part.cls", "-o", "part.nc", "--mount", "0,0,-40", "--verify"];
+    let run = post_in(folder.path(), &words);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    assert!(program.contains("G0 X30.000 Y10.030\nD1 Z20.000\n"), "{program}");
+}
+
+/// The angles of a plane have three decimals: across it Z goes by some micrometres, and that is no motion of Z ahead of the
+/// length.
+#[test]
+fn a_plane_of_rounded_angles_moves_no_depth_that_its_length_would_be_missed_for() {
+    let folder = tempfile::tempdir().unwrap();
+    for axis in ["0.139068146,-0.349383576,0.926603943", "-0.198732340,-0.468988249,0.860559838"] {
+        let cl = format!(
+            "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/150,120,100,{axis}\n\
+             CYCLE/DRILL,FEDTO,-10,MMPM,300,RAPTO,3\nGOTO/150,120,60,{axis}\nGOTO/-100,-80,60,{axis}\n\
+             CYCLE/OFF\nRAPID\nGOTO/-100,-80,150,{axis}\nFINI\n"
+        );
+        fs::write(folder.path().join("part.cls"), cl).unwrap();
+        let words = [
+            &["-m", "nutating-table", "part.cls", "-o", "part.nc", "--tool-length", "100"][..],
+            &["--dialect", "mazak", "--set", "control.planes=true", "--verify"],
+        ];
+        let run = post_in(folder.path(), &words.concat());
+        assert_eq!(run.code, 0, "{}", run.err);
+        let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        assert!(program.contains("\nG53.1\nG0 X"), "{program}");
+    }
+}

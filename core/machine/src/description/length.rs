@@ -49,16 +49,16 @@ impl Machine {
         (miss < MEASURED).then_some((along, miss))
     }
 
-    /// Where the axes stand where words that are axis positions are zero: what the control has put on of a tool of `length` mm
-    /// (all of it, or nothing as long as its length is not called) is put on along the axis of `place`, and the work offset
-    /// is one, whether it is called or not. Where the tool lies along that axis but for what a measurement leaves, the offset
-    /// was measured with this very tool, as the writer counts and its warning asks; where it does not, with the gauge point.
-    /// Without a `place` nothing is put on, ever: measured with the tool. None if the linear axes do not bring it there.
-    pub fn counted_from(&self, length: f64, called: bool, place: Option<usize>) -> Option<Joints> {
+    /// Where the axes stand where words that are axis positions are zero, with a tool of `length` mm in the spindle: what the
+    /// control has `put_on`, mm (its length; nothing as long as that is not called; that of the tool before until another
+    /// is), is put on along the axis of `place`, and the work offset is one all the while. Where the tool lies along that axis
+    /// but for what a measurement leaves, the offset was measured with this very tool, as the writer counts and its warning
+    /// asks; where it does not, with the gauge point. Without a `place` nothing is put on, ever: measured with the tool. None
+    /// if the linear axes do not bring it there.
+    pub fn counted_from(&self, length: f64, put_on: f64, place: Option<usize>) -> Option<Joints> {
         let Some(place) = place else {
             return self.zero_of(length);
         };
-        let put_on = if called { length } else { 0.0 };
         let direction = |place: usize| self.axes[place].joint.direction;
         let beside =
             |along: usize| along == place || direction(along).dot(&direction(place)) > 1.0 - SAME;

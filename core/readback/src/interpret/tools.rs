@@ -53,13 +53,10 @@ impl ControlState {
         self.state.standstill.change = Some(self.line);
         self.state_changed();
         self.tell(ProgramEvent::ToolChange { number, name });
-        if self.tools.by_tool && self.tools.length_on {
-            return self.length_changed();
-        }
         // What is not called counts too: the work offset was measured with the tool.
-        match self.is_whole() || !self.tools.length_on {
+        match self.is_whole() || !self.tools.length_on || self.tools.by_tool {
             true => self.length_changed(),
-            false => Ok(()),
+            false => self.solver_changed(),
         }
     }
 
@@ -184,13 +181,12 @@ impl ControlState {
                 }
             }
         };
-        let called = self.tools.length_on && place.is_some();
-        let known = || {
-            let tool = self.state.tool;
-            self.length_of(tool).or_else(|| find(&self.offsets.lengths, tool))
-        };
-        let length = if called { Some(self.state.length) } else { known() };
-        length.and_then(|length| self.machine.counted_from(length, called, place)).unwrap_or(exact)
+        let called = (self.tools.length_on && place.is_some()).then_some(self.state.length);
+        let tool = self.state.tool;
+        let known = self.length_of(tool).or_else(|| find(&self.offsets.lengths, tool));
+        let put_on = called.unwrap_or(0.0);
+        let zero = |length| self.machine.counted_from(length, put_on, place);
+        known.or(called).and_then(zero).unwrap_or(exact)
     }
 }
 

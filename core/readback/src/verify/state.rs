@@ -25,6 +25,9 @@ const DWELL: f64 = 0.01;
 /// Ways shorter than this take no time that could be compared, mm.
 pub(super) const SHORT: f64 = 1e-3;
 
+/// What three angles of a plane with three decimals of a degree, and those of two rotary axes, turn it by at most, radians.
+const ROUNDED: f64 = 3e-5;
+
 impl<C: Course> Verifier<'_, C> {
     /// Compares what holds in a cut with what the course asks for where the motion has its place.
     pub(super) fn compare(&mut self, motion: &Motion, places: &[ToolPlace]) {
@@ -346,11 +349,13 @@ impl<C: Course> Verifier<'_, C> {
         {
             return;
         }
-        let deeper = |joint: &usize| {
-            let way = motion.to.joints[*joint] - motion.from.joints[*joint];
-            libm::fabs(way) > SHORT && is_depth(self.machine, *joint)
-        };
-        if let Some(joint) = (0..self.machine.axes.len()).find(deeper) {
+        let axes = &self.machine.axes;
+        let way = |joint: usize| libm::fabs(motion.to.joints[joint] - motion.from.joints[joint]);
+        let slides = (0..axes.len()).filter(|joint| !axes[*joint].joint.rotary);
+        // Across a tilted plane whose angles are rounded.
+        let across = slides.map(way).fold(0.0, f64::max) * ROUNDED;
+        let deeper = |joint: &usize| way(*joint) > SHORT + across && is_depth(self.machine, *joint);
+        if let Some(joint) = (0..axes.len()).find(deeper) {
             let name = &self.machine.axes[joint].name;
             let message = format!("{name} moves without length compensation");
             self.fault("register", message, Some(motion), None, None);

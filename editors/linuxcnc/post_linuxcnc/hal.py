@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -39,13 +40,16 @@ class Hal:
     given: dict[str, float] = field(default_factory=dict)
     running: bool = False
     unread: list[str] = field(default_factory=list)  # files and lines of Tcl that were not read
+    places: dict[str, str] = field(default_factory=dict)  # where a pin was set or connected last
+    asked: set[str] = field(default_factory=set)  # pins whose value was looked for
 
-    def run(self, line: str) -> None:
-        """One line of a HAL file."""
+    def run(self, line: str, place: str) -> None:
+        """One line of a HAL file, which stands at `place`."""
         words = self._substituted(line.partition("#")[0]).split()
         if not words:
             return
         verb, rest = words[0], words[1:]
+        self.places.update(dict.fromkeys((word.partition("=")[0] for word in words if word not in ARROWS), place))
         if verb == "setp" and len(rest) >= 2:
             self.pins[rest[0]] = rest[1]
         elif "=" in verb and len(words) == 1:  # `pin=value` is short for setp
@@ -77,14 +81,15 @@ class Hal:
         except OSError:
             self.unread.append(f"{path}: cannot be read")
             return
-        for number, line in enumerate(text.replace("\\\n", " ").splitlines(), 1):
+        for number, line in _joined(text):
             if path.suffix != ".tcl" or not re.search(r"[$\[{]", line):
-                self.run(line)
+                self.run(line, f"{path}:{number}")
             else:
                 self.unread.append(f"{path}:{number}: {line.strip()}")
 
     def length(self, pin: str, default: float) -> Length:
         """The value of a pin that kinematics read."""
+        self.asked.add(pin)
         if pin in self.given:
             return Length(self.given[pin])
         signal = next((name for name, pins in self.nets.items() if pin in pins), None)
@@ -96,7 +101,7 @@ class Hal:
             if writer != pin and (value := self._output(writer)) is not None:
                 return value
         raise Refused(
-            f"{self.ini.path}: {pin} is on the signal {signal}, and what it is worth is not in the HAL files: say "
+            f"{self.places.get(pin, self.ini.path)}: {pin} is on the signal {signal}, and what it is worth is not in the HAL files: say "
             f"--set {pin}=VALUE, or --running while the machine runs"
         )
 
@@ -114,6 +119,7 @@ class Hal:
         """What an output is worth, where that is known."""
         if pin == TOOL:
             return Length(tool=1.0)
+        self.asked.add(pin)
         component, _, name = pin.rpartition(".")
         names = re.search(r"names=([\w.,-]+)", self.loaded.get("sum2", ""))
         if name == "out" and names and component in names[1].split(","):
@@ -137,11 +143,24 @@ class Hal:
         try:
             return Length(float(text))
         except ValueError:
-            raise Refused(f"{self.ini.path}: {pin} is set to {text!r}, which is not a number") from None
+            raise Refused(f"{self.places.get(pin, self.ini.path)}: {pin} is set to {text!r}, which is not a number") from None
 
     def _substituted(self, line: str) -> str:
         """A line with what it takes from the INI file: `[SECTION]KEY` or `[SECTION](KEY)`."""
         return re.sub(r"\[(\w+)\]\(?(\w+)\)?", lambda found: self.ini.text(found[1], found[2], found[0]), line)
+
+
+def _joined(text: str) -> Iterator[tuple[int, str]]:
+    """Lines with their numbers; one that ends in a backslash goes on in the next."""
+    begun, first = "", 0
+    for number, line in enumerate(text.splitlines(), 1):
+        first = first if begun else number
+        begun += line.removesuffix("\\") + " " * line.endswith("\\")
+        if not line.endswith("\\"):
+            yield first, begun
+            begun = ""
+    if begun:
+        yield first, begun
 
 
 def _running(pin: str) -> float | None:
@@ -159,7 +178,7 @@ def read(ini: Ini, given: dict[str, float], running: bool) -> Hal:
     for entry in ini.entries("HAL", "HALFILE"):
         hal.read(entry.text)
     for entry in ini.entries("HAL", "HALCMD"):
-        hal.run(entry.text)
+        hal.run(entry.text, entry.place)
     for entry in ini.entries("HAL", "POSTGUI_HALFILE"):
         hal.read(entry.text)
     return hal

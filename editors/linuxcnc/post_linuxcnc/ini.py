@@ -38,6 +38,7 @@ class Ini:
 
     path: Path
     sections: dict[str, dict[str, list[Entry]]] = field(default_factory=dict)
+    heads: dict[str, str] = field(default_factory=dict)  # the place of a section's first line
 
     def entries(self, section: str, key: str) -> list[Entry]:
         return self.sections.get(section, {}).get(key, [])
@@ -55,6 +56,13 @@ class Ini:
         found = self.first(section, key)
         return found.number() if found else None
 
+    def at(self, section: str, *keys: str) -> str:
+        """Where the keys of a section stand, with their values; those that it has not, by its line or else by the file."""
+        found = [entry for key in keys if (entry := self.first(section, key))]
+        if len(found) < len(keys):
+            return self.heads.get(section, f"{self.path}: there is no section [{section}]")
+        return ", ".join(f"{entry.place} = {entry.text}" for entry in found)
+
     def beside(self, name: str) -> Path:
         """A file as LinuxCNC finds it: from the folder of the INI file, which it changes to at its start."""
         return (self.path.parent / Path(name).expanduser()).resolve()
@@ -63,7 +71,7 @@ class Ini:
         """Millimetres in one unit of length."""
         entry = self.first("TRAJ", "LINEAR_UNITS")
         if entry is None:
-            raise Refused(f"{self.path}: [TRAJ] LINEAR_UNITS is missing: say mm or inch")
+            raise Refused(f"{self.at('TRAJ', 'LINEAR_UNITS')}: LINEAR_UNITS is missing: say mm or inch")
         if entry.text.lower() in LINEAR:
             return LINEAR[entry.text.lower()]
         return 1 / entry.number()  # as a number it is units a millimetre
@@ -81,18 +89,18 @@ class Ini:
 def read(path: Path) -> Ini:
     """Reads an INI file and what it includes."""
     ini = Ini(path.resolve())
-    _read_into(ini, ini.path, "", DEPTH)
+    _read_into(ini, ini.path, "", DEPTH, "")
     return ini
 
 
-def _read_into(ini: Ini, path: Path, section: str, depth: int) -> str:
-    """Reads one file; the section that it ends in goes on behind its `#INCLUDE`."""
+def _read_into(ini: Ini, path: Path, section: str, depth: int, asked: str) -> str:
+    """Reads one file, which `asked`, the place of an `#INCLUDE`, names; the section that it ends in goes on behind that."""
     if depth == 0:
-        raise Refused(f"{path}: included {DEPTH} deep: does it include itself?")
+        raise Refused(f"{asked}{path}: included {DEPTH} deep: does it include itself?")
     try:
         lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as fault:
-        raise Refused(f"{path}: cannot be read: {fault.strerror}") from None
+        raise Refused(f"{asked}{path}: cannot be read: {fault.strerror}") from None
     number = 0
     while number < len(lines):
         line = lines[number].strip()
@@ -101,11 +109,13 @@ def _read_into(ini: Ini, path: Path, section: str, depth: int) -> str:
             line = line[:-1].rstrip() + " " + lines[number].strip()
             number += 1
         if line.startswith("#INCLUDE"):
-            section = _read_into(ini, ini.beside(line[len("#INCLUDE") :].strip()), section, depth - 1)
+            name = line[len("#INCLUDE") :].strip()
+            section = _read_into(ini, ini.beside(name), section, depth - 1, f"{path}:{number}: {line}: ")
         elif not line or line[0] in "#;":
             continue
         elif line[0] == "[":
             section = line[1:].partition("]")[0].strip()
+            ini.heads.setdefault(section, f"{path}:{number}: [{section}]")
         elif "=" in line:
             key, _, value = line.partition("=")
             entry = Entry(value.strip(), f"{path}:{number}: [{section}] {key.strip()}")

@@ -88,7 +88,10 @@ def module(ini: Ini) -> Module:
     """The kinematics that the INI file names."""
     entry = ini.first("KINS", "KINEMATICS")
     if entry is None:
-        raise Refused(f"{ini.path}: [KINS] KINEMATICS is missing")
+        raise Refused(
+            f"{ini.at('KINS', 'KINEMATICS')}: KINEMATICS is missing: which axes the machine has is not known; say the module, "
+            "such as trivkins coordinates=XYZ"
+        )
     words = entry.text.split()
     arguments = dict(word.partition("=")[::2] for word in words[1:])
     name = words[0].lower()
@@ -138,8 +141,10 @@ def law(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
 def _words(ini: Ini, kins: Module, said: Said, *, have: str) -> list[str]:
     """The letters that programs have, without those that are left out; refuses what the chain would not have."""
     letters = [letter for letter in kins.axes if letter not in said.left_out]
+    named = ini.first("TRAJ", "COORDINATES")
+    place = ini.at("TRAJ", "COORDINATES") if named else f"{kins.entry.place} = {kins.entry.text}"
     faults = [
-        f"{ini.path}: [TRAJ] COORDINATES has {letter}, which {kins.name} gives no place in a chain: --leave-out {letter}, "
+        f"{place}: {kins.name} gives {letter} no place in a chain: --leave-out {letter}, "
         "where programs need not move it"
         for letter in letters
         if letter not in have
@@ -147,7 +152,7 @@ def _words(ini: Ini, kins: Module, said: Said, *, have: str) -> list[str]:
     missing = [letter for letter in "XYZ" if letter not in letters]
     if missing:
         faults.append(
-            f"{ini.path}: [TRAJ] COORDINATES has no {' and no '.join(missing)}: a lathe or another machine without X, Y and "
+            f"{place}: has no {' and no '.join(missing)}: a lathe or another machine without X, Y and "
             "Z is described by hand (docs/src/machine-builder/mill-turn.md)"
         )
     if faults:

@@ -10,6 +10,9 @@ from . import Refused, hal, kinematics
 from .ini import Ini
 from .kinematics import DIRECTIONS, LINEAR, Law, Module, RotaryAxis, Said
 
+# The key of the machine file that --set takes besides the pins of HAL, as post's own messages name it.
+REFERENCE = "tools.reference"
+
 UNLIMITED = 1e9  # LinuxCNC takes 1e99 where no limit is said
 
 
@@ -22,6 +25,7 @@ class Scale:
     feed: float | None
     acceleration: float | None
     home: float | None
+    places: str  # where the limits stand
 
 
 def number(value: float) -> str:
@@ -49,6 +53,12 @@ def _limits(ini: Ini, kins: Module, letter: str, *, joints: bool = True) -> Scal
                 raise Refused(f"{entry.place} = {entry.text}: {letter} cannot move so: say a number above 0")
         return all_of(key)
 
+    def places() -> str:
+        """Where limits stand, with their values, else the sections that have none."""
+        entries = (ini.first(section, key) for section in sections for key in ("MIN_LIMIT", "MAX_LIMIT"))
+        found = [f"{entry.place} = {entry.text}" for entry in entries if entry]
+        return ", ".join(found) or ini.at(next((each for each in sections if each in ini.heads), sections[0]), "MIN_LIMIT")
+
     speeds, accelerations = positive("MAX_VELOCITY"), positive("MAX_ACCELERATION")
     homes = [ini.number(section, "HOME") for section in sections[1:]]
     return Scale(
@@ -57,6 +67,7 @@ def _limits(ini: Ini, kins: Module, letter: str, *, joints: bool = True) -> Scal
         feed=min(speeds) * 60 if speeds else None,
         acceleration=min(accelerations, default=None),
         home=homes[0] * unit if homes and homes[0] is not None else None,
+        places=places(),
     )
 
 
@@ -82,13 +93,18 @@ def _axis(ini: Ini, kins: Module, letter: str, turned: RotaryAxis | None, belt: 
             )
     if scale.least > -UNLIMITED and scale.most < UNLIMITED:
         if scale.least >= scale.most:
-            raise Refused(f"{ini.path}: {letter} may go from {number(scale.least)} to {number(scale.most)}: no travel")
+            raise Refused(
+                f"{scale.places}: {letter} may go from {number(scale.least)} to {number(scale.most)}: no travel: let MIN_LIMIT be "
+                "below MAX_LIMIT"
+            )
         travel = f"travel    = [{number(scale.least)}, {number(scale.most)}]"
         lines.append(travel if scale.home is None else f"{travel:<40}# homes at {number(scale.home)}")
     elif turned:
         lines.append("cyclic    = true")
     else:
-        raise Refused(f"{ini.path}: {letter} has no travel: [AXIS_{letter}] MIN_LIMIT and MAX_LIMIT")
+        raise Refused(
+            f"{scale.places}: {letter} has no travel: say MIN_LIMIT and MAX_LIMIT in [AXIS_{letter}] or [JOINT_N] of it"
+        )
     if turned and turned.reversed:
         lines.append("reversed  = true")
     feed, acceleration = scale.feed, scale.acceleration
@@ -124,15 +140,35 @@ def _belts(ini: Ini) -> list[str]:
     return lines
 
 
-def _tools(ini: Ini, folder: Path) -> list[str]:
+@dataclass
+class Tools:
+    """What the user says of the tool table."""
+
+    left_out: bool = False
+    reference: float | None = None  # mm: the length of the tool that touched-off offsets count from
+
+
+def table_place(ini: Ini) -> str:
+    """Where the INI file names the tool table."""
+    return ini.at("EMCIO", "TOOL_TABLE")
+
+
+def _tools(ini: Ini, folder: Path, said: Tools) -> list[str]:
     """The tool table that the machine and `post` share."""
     name = ini.text("EMCIO", "TOOL_TABLE")
+    if said.reference is not None and (said.left_out or not name):
+        why = "--no-tools leaves it out" if said.left_out else f"{table_place(ini)} names none"
+        raise Refused(f"--set {REFERENCE}={number(said.reference)}: there is no tool table that it would be of: {why}")
+    if said.left_out:
+        return ["# [EMCIO] TOOL_TABLE is left out (--no-tools): lengths come from --tools or --tool-length."]
     if not name:
         return ["# [EMCIO] names no TOOL_TABLE: lengths come from --tools or --tool-length."]
     path = ini.beside(name)
     unit = "inch" if ini.millimetres() == 25.4 else "mm"
     lines = ["[tools]                                # the table that LinuxCNC itself has"]
     lines += [f'file   = "{os.path.relpath(path, folder.resolve())}"', 'format = "linuxcnc"', f'units  = "{unit}"']
+    if said.reference is not None:
+        lines.append(f"reference = {number(said.reference)}")
     if not path.is_file():  # LinuxCNC makes one at its first start
         return [f"# {line}" for line in lines]
     return lines
@@ -162,10 +198,28 @@ def _spindle(ini: Ini) -> list[str]:
     return ["", "[spindle]", *lines] if lines else []
 
 
-def machine_file(ini: Ini, said: Said, pins: dict[str, float], folder: Path, *, running: bool = False) -> str:
+def machine_file(
+    ini: Ini,
+    said: Said,
+    pins: dict[str, float],
+    folder: Path,
+    *,
+    running: bool = False,
+    tools: Tools | None = None,
+) -> str:
     """The text of the machine file, to stand in `folder`; refuses what the INI file and HAL files do not say."""
     kins = kinematics.module(ini)
-    law = kinematics.law(ini, kins, hal.read(ini, pins, running), said)
+    read = hal.read(ini, pins, running)
+    law = kinematics.law(ini, kins, read, said)
+    if needless := [pin for pin in pins if pin not in read.asked]:
+        asked = ", ".join(sorted(read.asked)) or "none"
+        raise Refused(
+            *(
+                f"--set {pin}={number(pins[pin])}: {kins.entry.place} = {kins.entry.text} takes no length from this pin; "
+                f"those that it takes: {asked}; and {REFERENCE} of the tool table"
+                for pin in needless
+            )
+        )
     name = " ".join(ini.text("EMC", "MACHINE", ini.path.stem).replace('"', "'").replace("\\", "/").split())
     lines = [
         f"# Written by post-from-ini from {ini.path.name}: kinematics {kins.entry.text}.",
@@ -194,6 +248,6 @@ def machine_file(ini: Ini, said: Said, pins: dict[str, float], folder: Path, *, 
         raise Refused(*faults)
     if law.belt:
         lines += _belts(ini)
-    lines += ["", *_tools(ini, folder), *_spindle(ini), "", *_control(ini, law)]
+    lines += ["", *_tools(ini, folder, tools or Tools()), *_spindle(ini), "", *_control(ini, law)]
     lines += ["", "[accuracy]", "tolerance = 0.005"]
     return "\n".join(lines) + "\n"

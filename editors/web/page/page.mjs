@@ -214,7 +214,9 @@ async function post() {
     return;
   }
   const own = stem(cl.name);
-  const errors = show(done, { [nc]: nc, [REPORT]: `${own}.html`, [SUMMARY]: `${own}.json` });
+  // A list of points has the summary's name itself.
+  const summary = cl.name === `${own}.json` ? `${own}-summary.json` : `${own}.json`;
+  const errors = show(done, { [nc]: nc, [REPORT]: `${own}.html`, [SUMMARY]: summary });
   const program = done.made[nc];
   if (done.ran.code === 0 && program) {
     showProgram(program.begin, program.blob);
@@ -289,12 +291,12 @@ for (const button of document.querySelectorAll("[data-tab]")) {
   button.onclick = () => tab(button.dataset.tab);
 }
 
-/** What a file that is dropped is, by its ending. */
+/** What a file that is dropped is, by its ending: a list of points (CSV, JSON) stands where a CL file does. */
 function kindOf(name) {
   if (/\.toml$/i.test(name)) {
     return "machine";
   }
-  return /\.(cls|clsf|cl|cldata|apt|ncl|aptsource)$/i.test(name) ? "cl" : "nc";
+  return /\.(cls|clsf|clt|cl|cldata|apt|ncl|aptsource|csv|json)$/i.test(name) ? "cl" : "nc";
 }
 document.ondragover = (event) => {
   event.preventDefault();

@@ -51,6 +51,36 @@ test("a sample is posted, its report shown, the program held against it; nothing
   assert.deepEqual(asked, [`file://${page}`]);
 });
 
+test("a list of points that is dropped is posted", async (test) => {
+  const chromium = await browser(test);
+  if (chromium === null) {
+    return;
+  }
+  await chromium.open(page);
+  const points = [[0, 0, 50, true], [0, 0, 5, true], [0, 0, -2, false], [60, 0, -2, false], [60, 0, 50, true]];
+  const csv = ["x,y,z,rapid", ...points.map(([x, y, z, rapid]) => `${x},${y},${z},${Number(rapid)}`), ""].join("\n");
+  const json = JSON.stringify({ points: points.map(([x, y, z, rapid]) => ({ x, y, z, rapid })) });
+  const words = "--tool-length 100 --tool 1 --spindle 6000 --feed 800";
+  const programs = [];
+  await chromium.ask(`document.getElementById("machines").value = "vmc", document.getElementById("machines").onchange()`);
+  await chromium.ask(`document.getElementById("options").value = ${JSON.stringify(words)}`);
+  for (const [name, content] of [["path.csv", csv], ["path.json", json]]) {
+    await chromium.ask(drop(name, content));
+    await chromium.until(`${text("cl-name")}.startsWith(${JSON.stringify(name)})`);
+    assert.equal(await chromium.ask(text("nc-name")), "none");
+    await chromium.ask(click("post"));
+    await chromium.until(`document.getElementById("verdict").className !== ""`);
+    assert.match(await chromium.ask(text("verdict")), /^The program is good/);
+    const program = await chromium.ask(text("program"));
+    assert.match(program, /X60/);
+    programs.push(program.replaceAll(name, ""));
+    const saved = await chromium.ask(`[...document.querySelectorAll("#downloads a")].map((link) => link.download)`);
+    assert.ok(!saved.includes(name), `the summary would take the name of ${name}`);
+  }
+  assert.equal(programs[0], programs[1]);
+  assert.deepEqual(chromium.complaints(), []);
+});
+
 test("the policy forbids what would leave", async (test) => {
   const chromium = await browser(test);
   if (chromium === null) {

@@ -16,5 +16,6 @@ pub use lint::looked_over;
 pub use program::{InterpretedProgram, control, read};
 
 /// Endings of NC programs.
-pub const ENDINGS: &[&str] =
-    &["nc", "h", "mpf", "spf", "ngc", "gcode", "tap", "eia", "min", "iso", "cnc"];
+pub const ENDINGS: &[&str] = &[
+    "nc", "h", "mpf", "spf", "ngc", "gcode", "tap", "eia", "min", "iso", "cnc", "ptp", "pim", "fnc",
+];

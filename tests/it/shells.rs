@@ -22,6 +22,44 @@ fn every_shell_has_its_completions() {
     assert_eq!((answer.code, answer.out.as_str()), (0, "verify\n"), "{}", answer.err);
 }
 
+/// Names of machines that begin so, and machine files, for every verb that takes one.
+#[test]
+fn machines_are_completed_by_name_and_by_file() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("ac-mine.toml"), "").unwrap();
+    let script = post(&["completions", "bash"]).out;
+    for words in [
+        &["post", "-m", "ac-"][..],
+        &["post", "lint", "--machine", "ac-"],
+        &["post", "batch", "-m", "ac-"],
+    ] {
+        let last = words.len() - 1;
+        let asked = format!(
+            "{script}\nCOMP_WORDS=({})\nCOMP_CWORD={last}\n_post post ac- {}\nprintf '%s\\n' \"${{COMPREPLY[@]}}\"\n",
+            words.join(" "),
+            words[last - 1],
+        );
+        let answer = run(Command::new("bash").current_dir(folder.path()), asked.as_bytes());
+        let mut found: Vec<&str> = answer.out.lines().collect();
+        found.sort_unstable();
+        assert!(
+            found.contains(&"ac-mine.toml") && found.contains(&"ac-trunnion"),
+            "{words:?}: {answer:?}"
+        );
+        assert!(found.iter().all(|name| name.starts_with("ac-")), "{found:?}");
+    }
+    let zsh = post(&["completions", "zsh"]).out;
+    assert_contains(&zsh, &["_post_machines() {", "ac-trunnion", ":MACHINE:_post_machines'"]);
+    assert!(!zsh.contains(":MACHINE:(") && !zsh.contains(":MACHINE:_default"));
+    let fish = post(&["completions", "fish"]).out;
+    let machines: Vec<&str> = fish.lines().filter(|line| line.contains(" -l machine ")).collect();
+    assert!(machines.len() > 5);
+    assert!(fish.contains("\nac-trunnion\\t''"), "{fish}");
+    for line in machines {
+        assert!(line.contains(" -r -F -a "), "{line}");
+    }
+}
+
 #[test]
 fn every_verb_has_a_page_and_the_same_one_each_time() {
     let folder = tempfile::tempdir().unwrap();

@@ -64,6 +64,7 @@ fn each_rule_is_told_at_its_line_and_a_good_program_breaks_none() {
         ("S2000 M3\n", "\n", "spindle", 25),
         ("S1000 M3", "S0 M3", "spindle-speed", 12),
         ("X40.\nZ-8.", "X40. M9\nZ-8.", "coolant", 27),
+        ("S2000 M3\nM8\n", "S2000 M3\n", "coolant", 24),
         ("G43 H2 Z50.", "G0 Z50.", "length", 25),
         ("G43 H1 Z50.", "G0 Z50.", "length", 9),
         ("X60.\n", "G49 X60.\n", "length", 13),
@@ -190,12 +191,127 @@ fn rapids_in_the_place_of_cuts_are_told() {
     assert_eq!((told(&found), code), (Vec::new(), 0), "{found:#}");
 }
 
+/// A way from cut to cut at their depth in two blocks, on each of which alone nothing need be wrong, and in two halves.
+#[test]
+fn a_rapid_across_in_several_blocks_is_told_as_one_is() {
+    let begin = "%\nO1\nG21 G17 G40 G80 G90 G94\nG53 G0 Z0.\nT1 M6\nS1000 M3\nG54\nG0 X0. Y0.\nG43 H1 Z50.\nZ2.\n";
+    let end = "G0 Z50.\nM5\nG49\nG53 G0 Z0.\nM30\n%\n";
+    // Slots side by side, the tool raised in between.
+    let slots: String =
+        (0..6).map(|at| format!("G0 Z2.\nX0. Y{0}.\nG1 Z-5. F300.\nX60.\n", 20 * at)).collect();
+    let good = format!("{begin}{slots}{end}");
+    let (_folder, code, found) = linted(&good, "", &["--strict"]);
+    assert_eq!((told(&found), code), (Vec::new(), 0), "{found:#}");
+    let raised = "G0 Z2.\nX0. Y40.\nG1 Z-5. F300.\nX60.\n";
+    for across in [
+        "G0 X0. Y40.\nG1 X60. F300.\n",
+        "G0 Y40.\nX0.\nG1 X60. F300.\n",
+        "G0 X30.\nX30. Y40.\nX0.\nG1 X60. F300.\n",
+        "G0 X30. Y30.\nX0. Y40.\nG1 X60. F300.\n",
+    ] {
+        let bad = good.replacen(raised, across, 1);
+        assert_ne!(bad, good);
+        let (_folder, _, found) = linted(&bad, "", &[]);
+        let rapids: Vec<_> = told(&found).into_iter().filter(|(code, _)| code == "rapid").collect();
+        assert!(!rapids.is_empty(), "{across}: {found:#}");
+        assert!((19..=21).contains(&rapids[0].1), "{across}: {found:#}");
+    }
+    // Up in between, or back on what is cut: nothing is wrong.
+    for across in [
+        "G0 X30.\nZ2.\nX0. Y40.\nG1 Z-5. F300.\nX60.\n",
+        "G0 X30.\nX0.\nZ2.\nY40.\nG1 Z-5. F300.\nX60.\n",
+    ] {
+        let (_folder, code, found) = linted(&good.replacen(raised, across, 1), "", &["--strict"]);
+        assert_eq!((told(&found), code), (Vec::new(), 0), "{across}: {found:#}");
+    }
+}
+
+/// Coolant of one tool is that of the next as well, unless tools without it are meant.
+#[test]
+fn a_tool_without_the_coolant_of_those_before_it_is_told_once() {
+    let tool = |number: u32, coolant: &str| {
+        format!(
+            "G53 G0 Z0.\nT{number} M6\nS1000 M3\nG54\nG0 X0. Y{0}.\nG43 H{number} Z50.\n{coolant}Z2.\nG1 Z-5. F300.\nX40.\nG0 Z50.\nM9\n",
+            10 * number
+        )
+    };
+    let program = |coolants: [&str; 3]| {
+        let tools: String =
+            (1..4).zip(coolants).map(|(number, coolant)| tool(number, coolant)).collect();
+        format!("%\nO1\nG21 G17 G40 G80 G90 G94\n{tools}M5\nG49\nG53 G0 Z0.\nM30\n%\n")
+    };
+    for (coolants, lines) in [
+        (["M8\n", "M8\n", "M8\n"], &[][..]),
+        (["M8\n", "", "M8\n"], &[22]),
+        (["M8\n", "", ""], &[22]),
+        (["M8\n", "M7\n", ""], &[35]),
+        (["", "M8\n", ""], &[]),
+        (["", "", ""], &[]),
+    ] {
+        let (_folder, _, found) = linted(&program(coolants), "", &[]);
+        let dry = told(&found).into_iter().filter(|(code, _)| code == "coolant");
+        let dry: Vec<u64> = dry.map(|(_, line)| line).collect();
+        assert_eq!(dry, lines, "{coolants:?}: {found:#}");
+    }
+    // One that the spindle does not turn, such as a probe.
+    let probe = program(["M8\n", "", "M8\n"]).replacen("T2 M6\nS1000 M3\n", "T2 M6\nM5\n", 1);
+    let (_folder, _, found) = linted(&probe, "", &[]);
+    assert!(told(&found).iter().all(|(code, _)| code != "coolant"), "{found:#}");
+}
+
+/// Where one work offset or tool lies from another nobody says: no way from one to the other is known.
+#[test]
+fn ways_across_work_offsets_that_nobody_states_are_not_known() {
+    let program = |more: &str| GOOD.replacen("G0 Z50.\nT2 M6", &format!("G0 Z50.\n{more}T2 M6"), 1);
+    let folder = tempfile::tempdir().unwrap();
+    let travel = |text: &str, words: &[&str]| {
+        fs::write(folder.path().join("part.nc"), text).unwrap();
+        let mut all = vec!["lint", "part.nc", "-m", "vmc", "--json", "found.json"];
+        all.extend(words);
+        post_in(folder.path(), &all);
+        let found = fs::read_to_string(folder.path().join("found.json")).unwrap();
+        let found: Value = serde_json::from_str(&found).unwrap();
+        let codes = told(&found).into_iter().map(|(code, _)| code);
+        codes
+            .filter(|code| ["over-travel", "part-place"].contains(&code.as_str()))
+            .collect::<Vec<_>>()
+    };
+    // 60 mm on from X 0 by G54, and 400 mm by G55, a metre apart if they are the same.
+    let apart = program("G55\nG0 X-700. Y0.\nZ2.\nG1 Z-5.\nX-1100.\nG0 Z50.\n");
+    let long = ["--tool-length", "100"];
+    assert_eq!(travel(&apart, &long), ["part-place"]);
+    fs::write(
+        folder.path().join("same.toml"),
+        "[work.G54]\nX = 0\nY = 0\nZ = 0\n[work.G55]\nX = 0\nY = 0\nZ = 0\n",
+    )
+    .unwrap();
+    assert_eq!(travel(&apart, &[&long[..], &["--offsets", "same.toml"]].concat()), ["over-travel"]);
+    // Of one offset it is known.
+    let one = program("G0 X-700. Y0.\nZ2.\nG1 Z-5.\nX-1100.\nG0 Z50.\n");
+    assert_eq!(travel(&one, &long), ["over-travel"]);
+    // High up with the one tool, deep down with the other: how much longer that is nobody says.
+    let deep = GOOD.replacen("G43 H1 Z50.", "G43 H1 Z400.", 1).replacen("Z-8.", "Z-300.", 1);
+    assert_eq!(travel(&deep, &long), ["over-travel"]);
+    assert_eq!(travel(&deep, &[]), ["part-place"]);
+    // Positions of the machine are known wherever the part sits.
+    let machine = GOOD.replacen("M30", "G53 X900.\nM30", 1);
+    assert!(travel(&machine, &long).contains(&"over-travel".to_owned()));
+}
+
 /// A file without a block is no program: an error, not a program in which nothing is wrong.
 #[test]
 fn a_file_without_a_block_is_refused() {
     for text in [String::new(), "\0".repeat(100_000), "%\n\n%\n".to_owned()] {
         let (_folder, code, found) = linted(&text, "", &[]);
         assert_eq!((told(&found), code), (vec![("missing".to_owned(), 1)], 1), "{found:#}");
+    }
+    // Nor is it one where what tells so is left out; with lines that read as blocks by chance it is none either.
+    let binary: String = (0..400).map(|at| format!("\u{1}\u{7f}\0X{at}\n")).collect();
+    for text in [String::new(), "\0\u{1}".repeat(1000), binary.clone(), binary + "G0 X1\n"] {
+        let ignored = ["--ignore", "syntax", "--ignore", "missing", "--ignore", "nc-refused"];
+        let (_folder, code, found) = linted(&text, "", &ignored);
+        assert_eq!(code, 1, "{found:#}");
+        assert!(!told(&found).is_empty());
     }
 }
 
@@ -297,7 +413,22 @@ fn the_hook_for_pre_commit_lets_good_programs_pass_alone() {
     fs::write(folder.path().join("bad.nc"), good.replacen("M3", "M5", 1)).unwrap();
     // By hand, with a word that nobody knows.
     fs::write(folder.path().join("hand.nc"), GOOD.replacen("M8", "M8 M77", 1)).unwrap();
-    for (files, code) in [(&["good.nc", "hand.nc"][..], 0), (&["good.nc", "bad.nc"][..], 1)] {
+    // Headers of C, and a program of Heidenhain.
+    let header = "/* 2. Redistributions */\n#ifndef PART_H\n#define PART_H\nstatic const int at[] = {\n1, 2,\n0x00, 3 };\n#endif\n";
+    fs::write(folder.path().join("part.h"), header).unwrap();
+    fs::write(folder.path().join("empty.h"), "").unwrap();
+    let klartext = "0  BEGIN PGM A MM\n1  L  X+900\n2  END PGM A MM\n";
+    fs::write(folder.path().join("klartext.h"), klartext).unwrap();
+    let alone = post_in(folder.path(), &["lint", "part.h", "-m", "dmu50"]);
+    assert_eq!(alone.code, 1, "named by hand it is a program: {}", alone.out);
+    for (files, code) in [
+        (&["good.nc", "hand.nc"][..], 0),
+        (&["good.nc", "bad.nc"][..], 1),
+        (&["good.nc", "part.h", "empty.h"][..], 0),
+        (&["part.h"][..], 0),
+        (&["klartext.h"][..], 1),
+        (&["part.h", "gone.h"][..], 2),
+    ] {
         let mut words: Vec<&str> = entry.split_whitespace().collect();
         words.extend(files);
         let run = post_in(folder.path(), &words);
@@ -309,10 +440,27 @@ fn the_hook_for_pre_commit_lets_good_programs_pass_alone() {
     }
 }
 
+/// VS Code knows programs by the endings of the language server, but for `.h`, which is C's there.
+#[test]
+fn vs_code_knows_the_endings_of_programs() {
+    let extension = fs::read_to_string(root().join("editors/vscode/package.json")).unwrap();
+    let extension: Value = serde_json::from_str(&extension).unwrap();
+    let languages = extension["contributes"]["languages"].as_array().unwrap();
+    let nc = languages.iter().find(|language| language["id"] == "post-nc").unwrap();
+    let known = nc["extensions"].as_array().unwrap().iter();
+    let mut known: Vec<&str> =
+        known.map(|ending| ending.as_str().unwrap().trim_start_matches('.')).collect();
+    known.push("h");
+    known.sort_unstable();
+    let mut ours = post_lsp_endings();
+    ours.sort_unstable();
+    assert_eq!(known, ours);
+}
+
 /// The endings by which the language server knows programs.
 fn post_lsp_endings() -> Vec<String> {
     let text = fs::read_to_string(root().join(Path::new("lsp/src/nc/mod.rs"))).unwrap();
     let list = text.split_once("ENDINGS").unwrap().1;
-    let list = list.split_once("&[\"").unwrap().1.split_once("\"]").unwrap().0;
-    list.split("\", \"").map(str::to_owned).collect()
+    let list = list.split_once("= &[").unwrap().1.split_once(']').unwrap().0;
+    list.split('"').skip(1).step_by(2).map(str::to_owned).collect()
 }

@@ -38,6 +38,15 @@ impl AxisEnds {
         }
     }
 
+    /// Takes the ways of one axis of others.
+    pub fn join(&mut self, joint: usize, other: &Self) {
+        if let Some([least, most]) = other.of(joint) {
+            let [first, last] = other.lines(joint);
+            self.take(joint, [least, least], |_| first);
+            self.take(joint, [most, most], |_| last);
+        }
+    }
+
     /// Least and largest position of an axis; none if it was led nowhere.
     pub fn of(&self, joint: usize) -> Option<[f64; 2]> {
         let ends = [self.least[joint], self.most[joint]];

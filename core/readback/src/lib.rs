@@ -101,6 +101,8 @@ pub struct MachineState {
     pub wrap: Option<Arc<WrapMode>>,
     /// Name of the work offset in force: `G54`.
     pub work_offset: Option<String>,
+    /// Nobody says where that one lies: it is taken to be where the machine file has the part.
+    pub offset_assumed: bool,
     /// The spindle.
     pub spindle: SpindleState,
     /// Coolants that flow.

@@ -29,3 +29,13 @@ pub fn text(machine: &Machine, name: &str, linted: &LintedProgram<'_>) -> String
     }
     rows.table()
 }
+
+/// Files that are no programs, as a line.
+pub fn left_out(headers: &[String]) -> String {
+    let mut rows = NamedValues::default();
+    rows.row(
+        "no programs",
+        format_args!("{}: no block of Klartext stands there", headers.join(", ")),
+    );
+    rows.table()
+}

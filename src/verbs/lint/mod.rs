@@ -1,5 +1,6 @@
 //! `post lint`: what is wrong with an NC program, or may be, without a CL file.
 
+mod headers;
 mod lint_text;
 
 use clap::Args;
@@ -50,6 +51,11 @@ pub struct LintArguments {
     /// Counts warnings as errors.
     #[arg(long)]
     strict: bool,
+
+    /// Leaves out files that end in .h and hold no block of Klartext: headers of C, where files are named by their endings
+    /// (the hook for pre-commit). Which they are is said.
+    #[arg(long)]
+    skip_headers: bool,
 
     /// Writes what was found as JSON, of several programs a list; `-` is standard output.
     #[arg(long, value_name = "FILE", value_parser = file())]
@@ -114,7 +120,14 @@ fn look(session: &Session, arguments: &LintArguments) -> Result<LookedOver, Fail
     }
     let (mut text, mut summaries, mut found) = (String::new(), Vec::new(), LookedOver::default());
     let machine = &control.machine;
+    let mut headers = Vec::new();
     for (input, program) in programs {
+        if let (true, Some(path), Ok(program)) = (arguments.skip_headers, input.path(), &program)
+            && headers::is_header(path, program.text()?).is_ok_and(|is_header| is_header)
+        {
+            headers.push(program.name.clone());
+            continue;
+        }
         let ignored = &arguments.ignore;
         let linted = program.map_err(Failure::from).and_then(|program| {
             let (name, source) = (&program.name, Box::new(program.text()?));
@@ -141,9 +154,12 @@ fn look(session: &Session, arguments: &LintArguments) -> Result<LookedOver, Fail
         summaries.push(LintSummary::new(&name, &machine.name, &linted));
         found.findings.extend(linted.findings);
     }
-    if text.is_empty() {
+    if text.is_empty() && headers.is_empty() {
         // Of nothing that was looked over nothing is written.
         return Err(found.unread.into());
+    }
+    if !headers.is_empty() {
+        text.push_str(&lint_text::left_out(&headers));
     }
     let mut texts = Vec::new();
     texts.extend(arguments.json.as_ref().map(|_| match summaries.as_slice() {

@@ -75,6 +75,8 @@ pub(super) struct CutDepths {
     /// The last motion was a cut that went so.
     cut: Option<Heading>,
     suspect: Option<Suspect>,
+    /// The tool is at the depth of the last cut: none but rapids across followed it.
+    level: bool,
     /// How the last motion went, if it was a rapid on the part.
     rapid: Option<Heading>,
     link: Option<Link>,
@@ -154,7 +156,9 @@ impl CutDepths {
     /// Takes the next motion; `found` is told of rapids before it that went where nothing was cut.
     pub fn take(&mut self, machine: &Machine, motion: &Motion, mut found: impl FnMut(DeepRapid)) {
         let link = self.link.take().filter(|link| link.goes_on_in(motion));
-        let suspect = self.suspect.take().and_then(|suspect| suspect.told(motion));
+        let suspected = self.suspect.take();
+        let suspect = suspected.and_then(|suspect| suspect.told(motion));
+        let carried = suspected.and_then(|suspect| suspect.carried(motion));
         if let Some(rapid) = suspect {
             if rapid.why == Depth::Down {
                 self.pass = Some(Pass::new(rapid.line, motion));
@@ -180,6 +184,7 @@ impl CutDepths {
                     if motion.machine { self.strange | bit } else { self.strange & !bit };
             }
         }
+        let level = std::mem::take(&mut self.level);
         if is_cut(motion) {
             self.cut(motion, found);
             return;
@@ -199,10 +204,17 @@ impl CutDepths {
             self.link = Some(Link { line: motion.line, before, way: heading });
         }
         let way = strange & linear == 0 && motion.led & linear == linear;
+        let level = level || cut.is_some();
+        self.level = level && is_across(motion);
         if let Some(heights) = self.heights_of(motion, false) {
-            let suspect = heights.suspect(motion, way, cut.is_some());
+            let suspect = heights.suspect(motion, way, level);
             let beside = |why| matches!(why, Depth::Down | Depth::Across);
-            self.suspect = suspect.filter(|suspect| mills || !beside(suspect.rapid.why));
+            let suspect = suspect.filter(|suspect| mills || !beside(suspect.rapid.why));
+            self.suspect = match (carried, suspect) {
+                (Some(carried), Some(next)) if next.is_surer(carried) => Some(next),
+                (Some(carried), _) => Some(carried),
+                (None, next) => next,
+            };
         }
         let unsure = |suspect: Suspect| suspect.until.is_some();
         if self.suspect.is_none_or(unsure)
@@ -255,6 +267,7 @@ impl CutDepths {
     /// A block was not understood: where the tool stands is not known.
     pub fn miss(&mut self) {
         (self.suspect, self.link, self.pass) = (None, None, None);
+        self.level = false;
         (self.cut, self.rapid) = (None, None);
         self.strange = u32::MAX;
     }
@@ -275,6 +288,12 @@ impl CutDepths {
     }
 }
 
+/// A motion stays at its height.
+fn is_across(motion: &Motion) -> bool {
+    let [from, to] = [&motion.from, &motion.to].map(|end| end.pose.tip);
+    !motion.turns() && libm::fabs((to - from).dot(&motion.to.pose.axis)) < SLACK
+}
+
 /// A motion ends inside the box around the raw part, as far as that is known.
 fn ends_in_stock(machine: &Machine, motion: &Motion) -> bool {
     let tip = motion.to.pose.tip;
@@ -291,6 +310,21 @@ impl Suspect {
             is_cut(next) && (from - end).norm() < SLACK && (to - from).dot(&axis) > -SLACK
         });
         sure.then_some(self.rapid)
+    }
+
+    /// A way from cut to cut may be several rapids: it, where the rapid `next` goes on at its height.
+    fn carried(self, next: &Motion) -> Option<Self> {
+        let (end, _) = self.until?;
+        let goes_on = (next.from.pose.tip - end).norm() < SLACK && is_across(next);
+        let across = matches!(self.rapid.why, Depth::Level | Depth::Across);
+        let Pose { tip, axis, .. } = next.to.pose;
+        (across && goes_on && next.kind == MotionKind::Rapid)
+            .then_some(Self { until: Some((tip, axis)), ..self })
+    }
+
+    /// It tells more than one that began before it on the same way.
+    fn is_surer(&self, before: Self) -> bool {
+        self.until.is_none() || before.rapid.why == Depth::Across && self.rapid.why == Depth::Level
     }
 }
 

@@ -180,6 +180,8 @@ pub fn look_over<'m>(
         }
     }
     let whole = faults.is_empty();
+    // Of what is no program nothing is left out: nothing would be wrong with it.
+    let foreign = report.blocks <= faults.len() as u64;
     let mut found = faults;
     found.extend(report.notes.iter().cloned());
     let unsaid = Unsaid { name, report: &report, spoken: &control.spoken, own: false, last_line };
@@ -200,7 +202,10 @@ pub fn look_over<'m>(
     let told = found.len();
     before.retain(|finding| !found[..told].contains(finding));
     found.append(&mut before);
-    let (findings, ignored) = left_out(found, |code| is_ignored(machine, ignored, code));
+    let (findings, ignored) = left_out(found, |finding| {
+        let kept = foreign && finding.severity == Severity::Error;
+        !kept && is_ignored(machine, ignored, finding.code)
+    });
     let mut findings = told_once(findings);
     in_order(&mut findings);
     text.rewind().map_err(unreadable)?;
@@ -211,10 +216,9 @@ pub fn look_over<'m>(
 /// The findings whose codes are not ignored, and how many there are of each code that is.
 fn left_out(
     found: Vec<Diagnostic>,
-    is_ignored: impl Fn(&str) -> bool,
+    is_ignored: impl Fn(&Diagnostic) -> bool,
 ) -> (Vec<Diagnostic>, Vec<(&'static str, u64)>) {
-    let (left_out, findings): (Vec<_>, Vec<_>) =
-        found.into_iter().partition(|finding| is_ignored(finding.code));
+    let (left_out, findings): (Vec<_>, Vec<_>) = found.into_iter().partition(is_ignored);
     let mut counts: Vec<(&'static str, u64)> = Vec::new();
     for finding in left_out {
         match counts.iter_mut().find(|(code, _)| *code == finding.code) {

@@ -170,6 +170,12 @@ pub(super) struct LintWatch<'m> {
     turns: bool,
     /// The tool in the spindle was cooled in a cut.
     cooled: bool,
+    /// The first line on which it cuts dry; none where a block was not understood since it came.
+    dry: Option<u64>,
+    /// The last tool that was cooled, as long as none before it has cut dry.
+    wet_tool: Option<u32>,
+    /// Some tool has cut dry all along, or nobody knows: dry ones are meant.
+    dry_tools: bool,
     registers: Vec<RegisterUse>,
     /// Speeds that the spindle was asked for, by their digits.
     speeds: BTreeMap<u64, bool>,
@@ -206,6 +212,9 @@ impl<'m> LintWatch<'m> {
             has_lengths: false,
             turns: false,
             cooled: false,
+            dry: None,
+            wet_tool: None,
+            dry_tools: false,
             registers: Vec::new(),
             speeds: BTreeMap::new(),
             missed: false,
@@ -229,6 +238,7 @@ impl<'m> LintWatch<'m> {
     pub fn miss(&mut self) {
         self.missed = true;
         (self.new_tool, self.had_length, self.work.cuts) = (false, false, true);
+        self.dry_tools |= !self.cooled;
         self.depths.iter_mut().for_each(CutDepths::miss);
         self.stray.miss();
     }
@@ -255,6 +265,7 @@ impl<'m> LintWatch<'m> {
                 self.left_idle();
                 self.first_tool = self.first_tool.or(*number);
                 if *number != self.tools[1] || number.is_none() {
+                    self.left_dry();
                     self.tools = [self.tools[1], *number];
                     self.cooled = false;
                 }
@@ -303,11 +314,31 @@ impl<'m> LintWatch<'m> {
         if let (false, Some((line, count))) = (cuts, rapids)
             && count >= IDLE
         {
-            let tool =
-                self.tools[1].map_or_else(|| "the tool".to_owned(), |tool| format!("tool {tool}"));
+            let tool = self.tool();
             let message = format!("{tool} moves at rapid alone and cuts nothing, its spindle on");
             self.tell(Rule::Idle, line, message);
         }
+    }
+
+    /// The tool goes: did it cut dry, where all before it had coolant?
+    fn left_dry(&mut self) {
+        match (self.dry.take().filter(|_| !self.cooled), self.wet_tool) {
+            (Some(line), Some(wet)) if !self.dry_tools => {
+                let tool = self.tool();
+                let message =
+                    format!("{tool} cuts without coolant, and tool {wet} before it had it");
+                self.tell(Rule::Coolant, line, message);
+                self.dry_tools = true;
+            }
+            (Some(_), _) => self.dry_tools = true,
+            (None, _) if self.cooled => self.wet_tool = self.tools[1],
+            (None, _) => {}
+        }
+    }
+
+    /// What messages call the tool in the spindle.
+    fn tool(&self) -> String {
+        self.tools[1].map_or_else(|| "the tool".to_owned(), |tool| format!("tool {tool}"))
     }
 
     /// Counts what the tool does.
@@ -517,6 +548,10 @@ impl<'m> LintWatch<'m> {
             let message = format!("{tool} goes on cutting without coolant, and began with it");
             self.tell(Rule::Coolant, motion.line, message);
         }
+        let turns = !matches!(motion.state.spindle, SpindleState::Off | SpindleState::Oriented);
+        if turns && !flows {
+            self.dry.get_or_insert(motion.line);
+        }
         self.cooled |= flows;
     }
 
@@ -574,6 +609,7 @@ impl<'m> LintWatch<'m> {
     pub fn finish(mut self, name: &str, report: &ReadReport) -> Vec<Diagnostic> {
         self.left_ready(None);
         self.left_idle();
+        self.left_dry();
         self.tell_rapids();
         self.tell_registers();
         if let Some((StrayPoint { line, aside }, count)) = self.stray.finish() {

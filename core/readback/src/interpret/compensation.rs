@@ -213,6 +213,7 @@ impl ControlState {
             );
         }
         self.state.work_offset = Some(name.to_owned());
+        self.state.offset_assumed = place.is_none();
         self.state_changed();
         self.tell(ProgramEvent::WorkOffset(name.to_owned()));
         if self.work != place {

@@ -157,6 +157,7 @@ impl ControlState {
                 face: None,
                 wrap: None,
                 work_offset: None,
+                offset_assumed: false,
                 spindle: SpindleState::Off,
                 coolants: Coolants::default(),
                 standstill: Standstill::default(),

@@ -1,6 +1,7 @@
 //! What a motion asks of the machine's axes: their travel, at its ends and on its way, and their largest feeds.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use post_machine::description::{Axis, Machine};
 use post_machine::diagnostic::Diagnostic;
@@ -12,7 +13,7 @@ use post_machine::kinematics::{
 };
 use post_machine::part_anywhere::{AxisEnds, AxisWay, needed};
 
-use crate::{Curve, Interpolation, Motion, MotionKind};
+use crate::{Curve, Interpolation, MachineState, Motion, MotionKind};
 
 /// Distance beyond an end of travel that is rounding, mm or degrees.
 const ROUNDED: f64 = 0.0015;
@@ -25,6 +26,12 @@ const NO_TIME: f64 = 1e6;
 
 /// Angles of one solution, radians: beside a pole they are known no better.
 const SAME: f64 = 1e-4;
+
+/// Most datums whose ways are kept; those of more are not known.
+const MOST_DATUMS: usize = 64;
+
+/// The tip of a tool misses the axis that its length moves by no more, mm of a mm.
+const LEANS: f64 = 1e-6;
 
 /// Places of a curve at which its axis values are looked at, of an arc for each turn: between three of them an axis
 /// goes on a parabola, up to 4e-6 of the radius.
@@ -68,27 +75,101 @@ enum Led {
     Machine,
 }
 
+/// What positions of the part count from, as far as nobody says where that is: only ways from one of them are known.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Datum {
+    /// Name of the work offset.
+    offset: Option<String>,
+    /// Register of the length, and the tool.
+    length: Option<(Option<u32>, Option<u32>)>,
+}
+
+impl Datum {
+    /// Of positions in this state.
+    fn of(state: &MachineState) -> Self {
+        let length = (state.length_register.filter(|register| *register != 0), state.tool);
+        Self {
+            offset: state.work_offset.clone().filter(|_| state.offset_assumed),
+            length: (state.length == 0.0).then_some(length),
+        }
+    }
+}
+
 /// Ways of the axes in words of the part, on a machine whose part may sit anywhere.
 #[derive(Clone, Debug)]
 struct PartWays {
     led: [Led; MAX_AXES],
-    ends: AxisEnds,
+    /// By what they count from, of no more than [`MOST_DATUMS`].
+    ends: Vec<(Datum, AxisEnds)>,
+    /// The state of the last motion, and the place of its datum.
+    last: Option<(Arc<MachineState>, usize)>,
+    /// The axis that the length of a tool moves; none where it may move any.
+    depth: Option<usize>,
 }
 
 impl PartWays {
-    const NONE: Self = Self { led: [Led::Nowhere; MAX_AXES], ends: AxisEnds::NONE };
+    fn new(machine: &Machine) -> Self {
+        let depth = machine.lies_along().filter(|(_, miss)| *miss < LEANS).map(|(place, _)| place);
+        Self { led: [Led::Nowhere; MAX_AXES], ends: Vec::new(), last: None, depth }
+    }
+
+    /// Where ways of this state are kept.
+    fn place(&mut self, state: &Arc<MachineState>) -> Option<usize> {
+        if let Some((last, place)) = &self.last
+            && Arc::ptr_eq(last, state)
+        {
+            return Some(*place);
+        }
+        let datum = Datum::of(state);
+        let place = match self.ends.iter().position(|(known, _)| *known == datum) {
+            Some(place) => place,
+            None if self.ends.len() < MOST_DATUMS => {
+                self.ends.push((datum, AxisEnds::NONE));
+                self.ends.len() - 1
+            }
+            None => return None,
+        };
+        self.last = Some((Arc::clone(state), place));
+        Some(place)
+    }
+
+    /// Ways of an axis, those together that count from the same; with the work offset where there are several.
+    fn of(&self, joint: usize) -> Vec<(Option<&str>, AxisEnds)> {
+        let lengths = self.depth.is_none_or(|depth| depth == joint);
+        let mut joined: Vec<(&Datum, AxisEnds)> = Vec::new();
+        for (datum, ends) in self.ends.iter().filter(|(_, ends)| ends.of(joint).is_some()) {
+            let same = |(known, _): &&mut (&Datum, AxisEnds)| {
+                known.offset == datum.offset && (!lengths || known.length == datum.length)
+            };
+            match joined.iter_mut().find(same) {
+                Some((_, known)) => known.join(joint, ends),
+                None => joined.push((datum, ends.clone())),
+            }
+        }
+        let several = joined.iter().any(|(datum, _)| datum.offset != joined[0].0.offset);
+        let told = joined.into_iter().map(|(datum, ends)| {
+            let offset = datum.offset.as_deref().filter(|_| several);
+            (offset, ends)
+        });
+        told.collect()
+    }
 
     fn take(&mut self, motion: &Motion, [least, most]: [&Joints; 2]) {
         for joint in 0..MAX_AXES {
-            if motion.from.joints[joint] != motion.to.joints[joint] {
+            let moved = motion.from.joints[joint] != motion.to.joints[joint];
+            if moved {
                 self.led[joint] = match motion.machine {
                     false => Led::Part,
                     true if motion.way == Interpolation::Axes => Led::Machine,
                     true => Led::Nowhere,
                 };
             }
-            if self.led[joint] == Led::Part {
-                self.ends.take(joint, [least[joint], most[joint]], |_| motion.line);
+            // One that stands counts from where it was led.
+            if (moved || least[joint] != most[joint])
+                && self.led[joint] == Led::Part
+                && let Some(place) = self.place(&motion.state)
+            {
+                self.ends[place].1.take(joint, [least[joint], most[joint]], |_| motion.line);
             }
         }
     }
@@ -103,7 +184,7 @@ impl AxisLimitCheck {
             slowness,
             driven,
             limited: driven || slowness.iter().any(|slowness| *slowness > 0.0),
-            anywhere: machine.part_sits_anywhere().then(|| Box::new(PartWays::NONE)),
+            anywhere: machine.part_sits_anywhere().then(|| Box::new(PartWays::new(machine))),
         }
     }
 
@@ -199,27 +280,35 @@ impl AxisLimitCheck {
     /// What is to be said of travel at the end, where the part may sit anywhere: that it fits nowhere, or how much the
     /// program needs; with the line that leads farthest out along the first axis of which that is said.
     pub fn part_place(&self, machine: &Machine) -> Option<(u64, Diagnostic)> {
-        let found = &self.anywhere.as_ref()?.ends;
+        let ways = self.anywhere.as_ref()?;
         let mut outside = Vec::new();
         let mut line = 0;
         for (joint, axis) in machine.axes.iter().enumerate() {
-            let Some(ends) = found.of(joint) else {
-                continue;
-            };
-            let ends = ends.map(|end| axis.reading(end));
-            let travel = axis.travel.map(|travel| travel.map(|end| axis.reading(end)));
-            let way = AxisWay { name: &axis.name, ends, travel };
-            if way.is_too_long() {
-                let lines = found.lines(joint);
-                let [first, last] = lines.map(|line| line.to_string());
-                return Some((lines[0].max(lines[1]), way.too_long([&first, &last])));
-            }
-            if let Some(outside_by) = way.outside(machine) {
+            for (offset, found) in ways.of(joint) {
+                let Some(ends) = found.of(joint) else {
+                    continue;
+                };
+                let ends = ends.map(|end| axis.reading(end));
+                let travel = axis.travel.map(|travel| travel.map(|end| axis.reading(end)));
+                let way = AxisWay { name: &axis.name, ends, travel };
+                if way.is_too_long() {
+                    let lines = found.lines(joint);
+                    let [first, last] = lines.map(|line| line.to_string());
+                    return Some((lines[0].max(lines[1]), way.too_long([&first, &last])));
+                }
+                let Some(mut outside_by) = way.outside(machine) else {
+                    continue;
+                };
                 if let (true, Some([least, most])) = (outside.is_empty(), travel) {
                     let upwards = ends[1] - most > least - ends[0];
                     line = found.lines(joint)[usize::from(upwards)];
                 }
-                outside.push(outside_by);
+                if let Some(offset) = offset {
+                    outside_by.push_str(&format!(" ({offset})"));
+                }
+                if !outside.contains(&outside_by) {
+                    outside.push(outside_by);
+                }
             }
         }
         (!outside.is_empty()).then(|| (line, needed(&outside, "")))

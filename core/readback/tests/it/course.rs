@@ -39,6 +39,7 @@ fn state(solver: &Arc<Solver>) -> Arc<MachineState> {
         face: None,
         wrap: None,
         work_offset: None,
+        offset_assumed: false,
         spindle: SpindleState::Off,
         coolants: Coolants::default(),
         standstill: Default::default(),

@@ -149,6 +149,7 @@ fn what_is_found_does_not_hang_on_whether_each_line_is_told() {
         face: None,
         wrap: None,
         work_offset: None,
+        offset_assumed: false,
         spindle: SpindleState::Off,
         coolants: Coolants::default(),
         standstill: Default::default(),

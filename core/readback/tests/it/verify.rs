@@ -154,6 +154,7 @@ impl Does {
             face: None,
             wrap: None,
             work_offset: None,
+            offset_assumed: false,
             spindle: SpindleState::Off,
             coolants: Coolants::default(),
             standstill: Default::default(),

@@ -100,7 +100,7 @@ def test_units_gantries_includes_and_the_narrower_limit(tmp_path: Path) -> None:
         (("COORDINATES = X Y Z", "COORDINATES = X Y Z W"), "[TRAJ] COORDINATES = X Y Z W: trivkins gives W no place"),
         (("COORDINATES = X Y Z", "COORDINATES = X Z"), "[TRAJ] COORDINATES = X Z: has no Y"),
         (("MAX_LIMIT = 0.5", "MAX_LIMIT = top"), "[AXIS_Z] MAX_LIMIT: 'top' is not a number"),
-        (("trivkins coordinates=XYYZ", "mykins"), "[KINS] KINEMATICS: mykins is not known here"),
+        (("trivkins coordinates=XYYZ", "mykins"), "[KINS] KINEMATICS = mykins: mykins is not known here"),
         (("MIN_LIMIT = -5\n", "MIN_LIMIT = 5\n"), "Z may go from 127 to 12.7: no travel"),
         (("#INCLUDE rest.inc", "#INCLUDE gone.inc"), "#INCLUDE gone.inc: "),
     ],

@@ -75,6 +75,11 @@ class Module:
     letters: str
     axes: str
 
+    @property
+    def place(self) -> str:
+        """Where the line stands, with its value."""
+        return f"{self.entry.place} = {self.entry.text}"
+
     def joints(self, letter: str) -> list[int]:
         """The joints that a letter moves: two of a gantry."""
         return [number for number, each in enumerate(self.letters) if each == letter]
@@ -112,7 +117,7 @@ class Said:
 def law(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
     """The chain of a module, or why there is none."""
     if kins.name in REFUSED:
-        raise Refused(f"{kins.entry.place}: {kins.name}: {REFUSED[kins.name]}")
+        raise Refused(f"{kins.place}: {kins.name}: {REFUSED[kins.name]}")
     makers = {
         "trivkins": _trivial,
         "corexykins": _corexy,
@@ -125,11 +130,11 @@ def law(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
     if kins.name not in makers:
         known = ", ".join(sorted(makers))
         raise Refused(
-            f"{kins.entry.place}: {kins.name} is not known here; known are {known}: write the machine file by hand"
+            f"{kins.place}: {kins.name} is not known here; known are {known}: write the machine file by hand"
         )
     for pin in hal.pins:
         if pin.startswith(f"{kins.name}.") and pin.partition(".")[2] not in PINS.get(kins.name, {}):
-            raise Refused(f"{kins.entry.place}: the HAL files set {pin}, which is not known here")
+            raise Refused(f"{kins.place}: the HAL files set {pin}, which is not known here")
     made = makers[kins.name](ini, kins, hal, said)
     known = {axis.letter for axis in made.rotary}
     for letter in said.reversed:
@@ -142,7 +147,7 @@ def _words(ini: Ini, kins: Module, said: Said, *, have: str) -> list[str]:
     """The letters that programs have, without those that are left out; refuses what the chain would not have."""
     letters = [letter for letter in kins.axes if letter not in said.left_out]
     named = ini.first("TRAJ", "COORDINATES")
-    place = ini.at("TRAJ", "COORDINATES") if named else f"{kins.entry.place} = {kins.entry.text}"
+    place = ini.at("TRAJ", "COORDINATES") if named else kins.place
     faults = [
         f"{place}: {kins.name} gives {letter} no place in a chain: --leave-out {letter}, "
         "where programs need not move it"
@@ -165,7 +170,7 @@ def _trivial(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
     letters = _words(ini, kins, said, have="XYZABC")
     named = {axis.letter: axis for axis in said.rotary}
     faults = [
-        f"{kins.entry.place}: what {letter} turns, and where its line is, stands in no INI file: --table {letter}=X,Y,Z "
+        f"{kins.place}: what {letter} turns, and where its line is, stands in no INI file: --table {letter}=X,Y,Z "
         f"where it turns the part, --head {letter}=X,Y,Z where it turns the tool: a point of its line, in machine "
         "coordinates with all axes at zero"
         for letter in letters
@@ -214,7 +219,7 @@ def _lengths(kins: Module, hal: Hal) -> dict[str, Length]:
     found = {pin: hal.length(f"{kins.name}.{pin}", default) for pin, default in PINS[kins.name].items()}
     moved = [pin for pin, value in found.items() if value.tool and not pin.startswith(("tool-offset", "pivot-length"))]
     if moved:
-        raise Refused(f"{kins.entry.place}: {kins.name}.{moved[0]} changes with the tool: no chain does")
+        raise Refused(f"{kins.place}: {kins.name}.{moved[0]} changes with the tool: no chain does")
     return found
 
 
@@ -222,7 +227,7 @@ def _known_tool(kins: Module, pin: str, value: Length) -> None:
     """The kinematics must know the length of the tool, or the tip is elsewhere than the program says."""
     if value.tool != 1:
         raise Refused(
-            f"{kins.entry.place}: {kins.name}.{pin} does not hold the tool's length: the tip would be led wrong. Connect it to "
+            f"{kins.place}: {kins.name}.{pin} does not hold the tool's length: the tip would be led wrong. Connect it to "
             "motion.tooloffset.z in a HAL file, as LinuxCNC's own configuration does"
         )
 
@@ -236,7 +241,7 @@ def _trunnion(ini: Ini, kins: Module, hal: Hal, said: Said) -> Law:
     at = {name: value.constant for name, value in pins.items()}
     unused = "x-offset" if tilt == "A" else "y-offset"
     if at[unused]:
-        raise Refused(f"{kins.entry.place}: {kins.name}.{unused} is set, and the module's law has no place for it")
+        raise Refused(f"{kins.place}: {kins.name}.{unused} is set, and the module's law has no place for it")
     against = not at["conventional-directions"]
     centre = (at["x-rot-point"], at["y-rot-point"], at["z-rot-point"])
     swing = tuple(base + at[f"{axis}-offset"] for base, axis in zip(centre, "xyz"))
@@ -273,7 +278,7 @@ def _switched(ini: Ini, kins: Module, hal: Hal, made: Law, tcp_type: int) -> Law
     """Which M codes switch the kinematics, found in the remaps: `M68 E3 Q1`, or the number under a name."""
     if "motion.switchkins-type" not in [pin for pins in hal.nets.values() for pin in pins]:
         raise Refused(
-            f"{kins.entry.place}: nothing is connected to motion.switchkins-type, so a program cannot switch {kins.name} on and "
+            f"{kins.place}: nothing is connected to motion.switchkins-type, so a program cannot switch {kins.name} on and "
             "off, and G53 would move the tip and not the axes: see the configurations of LinuxCNC under configs/sim/axis/vismach"
         )
     codes = {}
@@ -284,7 +289,7 @@ def _switched(ini: Ini, kins: Module, hal: Hal, made: Law, tcp_type: int) -> Law
     identity = 0 if tcp_type == 1 else 1
     if tcp_type not in codes or identity not in codes:
         raise Refused(
-            f"{kins.entry.place}: no REMAP of [RS274NGC] sets the kinematics to {tcp_type} ({kins.name}) and to {identity} (axes): "
+            f"{kins.place}: no REMAP of [RS274NGC] sets the kinematics to {tcp_type} ({kins.name}) and to {identity} (axes): "
             "take M428 and M429 of LinuxCNC's own configurations"
         )
     made.tcp, made.tcp_on, made.tcp_off = True, codes[tcp_type], codes[identity]

@@ -215,7 +215,7 @@ def machine_file(
         asked = ", ".join(sorted(read.asked)) or "none"
         raise Refused(
             *(
-                f"--set {pin}={number(pins[pin])}: {kins.entry.place} = {kins.entry.text} takes no length from this pin; "
+                f"--set {pin}={number(pins[pin])}: {kins.place} takes no length from this pin; "
                 f"those that it takes: {asked}; and {REFERENCE} of the tool table"
                 for pin in needless
             )

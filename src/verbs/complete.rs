@@ -38,10 +38,12 @@ pub fn run(
     Ok(())
 }
 
-/// The command with `names` as values of `--machine`, in all its verbs.
+/// The command with `names` as values of all that take a machine, in all its verbs.
 fn with_machines(command: Command, names: &[String]) -> Command {
-    let command = command.mut_args(|arg| match arg.get_long() {
-        Some("machine") => arg.value_parser(PossibleValuesParser::new(names.to_vec())),
+    let command = command.mut_args(|arg| match arg.get_value_names() {
+        Some([name]) if name == "MACHINE" => {
+            arg.value_parser(PossibleValuesParser::new(names.to_vec()))
+        }
         _ => arg,
     });
     command.mut_subcommands(|verb| with_machines(verb, names))
@@ -54,11 +56,9 @@ fn with_files(shell: Shell, text: &str, names: &[String]) -> String {
         Shell::Bash => text
             .replace(&format!("compgen -W \"{listed}\""), &format!("compgen -f -W \"{listed}\"")),
         Shell::Fish => {
-            let lines = text.lines().map(|line| match line.contains(" -l machine ") {
-                true => line.replacen(" -r -f -a ", " -r -F -a ", 1) + "\n",
-                false => line.to_owned() + "\n",
-            });
-            lines.collect()
+            let first = names.first().map_or("", String::as_str);
+            let ours = [" -f -a ", " -F -a "].map(|files| format!("{files}\"{first}\\t"));
+            text.replace(&ours[0], &ours[1])
         }
         Shell::Zsh => {
             let ours = format!(

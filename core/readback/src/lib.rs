@@ -129,4 +129,6 @@ pub struct Standstill {
     pub coolant: Option<u64>,
     /// A tool was changed, whether the spindle turned or not: most controls stop it for that.
     pub change: Option<u64>,
+    /// A tool was changed while a coolant flowed, on a control whose manual does not say that it flows on.
+    pub dry_change: Option<u64>,
 }

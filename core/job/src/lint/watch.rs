@@ -540,6 +540,11 @@ impl<'m> LintWatch<'m> {
                 "cuts behind the stop on line {stop}, which stops the coolant, and no word turns it on again"
             );
             self.tell(Rule::Coolant, motion.line, message);
+        } else if let Some(change) = motion.state.standstill.dry_change {
+            let message = format!(
+                "cuts behind the tool change on line {change}, for which many controls stop the coolant, and no word turns it on again"
+            );
+            self.tell(Rule::Coolant, motion.line, message);
         } else if self.cooled && !flows {
             let tool = match motion.state.tool {
                 Some(tool) => format!("tool {tool}"),

@@ -184,7 +184,8 @@ impl ControlState {
     }
 
     pub(super) fn flow_of_coolant(&mut self, coolants: crate::Coolants) {
-        if self.state.standstill.coolant.take().is_some() {
+        let standstill = &mut self.state.standstill;
+        if standstill.coolant.take().is_some() | standstill.dry_change.take().is_some() {
             self.state_changed();
         }
         if self.state.coolants != coolants {

@@ -7,7 +7,7 @@ use post_plugin::{Language, Lengths};
 
 use super::ModesInForce;
 use super::state::{ArcPlane, ControlState};
-use crate::ProgramEvent;
+use crate::{Coolants, ProgramEvent};
 
 /// What the control knows of the tool and its length.
 #[derive(Clone, Debug, Default)]
@@ -51,6 +51,10 @@ impl ControlState {
         self.tools.longer = 0.0;
         self.tools.ready_at = None;
         self.state.standstill.change = Some(self.line);
+        // "No other changes" by M6, as RS274/NGC has it.
+        let flows = self.state.coolants != Coolants::default();
+        let ends = flows && self.lexicon.language() != Language::Rs274;
+        self.state.standstill.dry_change = ends.then_some(self.line);
         self.state_changed();
         self.tell(ProgramEvent::ToolChange { number, name });
         // What is not called counts too: the work offset was measured with the tool.

@@ -130,3 +130,41 @@ fn the_page_on_security_has_a_row_for_each_direct_dependency() {
         "{locked} crates are in the lock file"
     );
 }
+
+/// Crates are packed one after the other, each behind those that it stands on and that its tests name by version.
+#[test]
+fn the_crates_can_be_published_in_some_order() {
+    let metadata = metadata();
+    let published = packages(&metadata)
+        .filter(|package| !from_outside(package) && package["publish"].is_null());
+    let published: BTreeMap<&str, &Value> =
+        published.map(|package| (text(package, "name"), package)).collect();
+    assert!(published.len() > 30, "{:?}", published.keys());
+    let mut waiting: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for (name, package) in &published {
+        let mut stands_on = BTreeSet::new();
+        for dependency in package["dependencies"].as_array().unwrap() {
+            let ours = dependency["source"].is_null();
+            let by_path_alone = text(dependency, "req") == "*";
+            let of_tests = text(dependency, "kind") == "dev";
+            let on = text(dependency, "name");
+            assert!(
+                !ours || of_tests || !by_path_alone && published.contains_key(on),
+                "{name} stands on {on}, which is not published"
+            );
+            if ours && !by_path_alone {
+                stands_on.insert(on);
+            }
+        }
+        waiting.insert(name, stands_on);
+    }
+    while !waiting.is_empty() {
+        let ready: Vec<&str> = waiting
+            .iter()
+            .filter(|(_, on)| on.iter().all(|on| !waiting.contains_key(on)))
+            .map(|(name, _)| *name)
+            .collect();
+        assert!(!ready.is_empty(), "each of these waits for another: {waiting:?}");
+        waiting.retain(|name, _| !ready.contains(name));
+    }
+}

@@ -97,7 +97,7 @@ class Reader:
         called. Where the tool leans from that slide by as little as is measured, the offset was measured with this tool, as
         the warning of ``post`` asks; else with the gauge point."""
         called = self.offset or 0.0
-        length = self.lengths.get(self.tool or 0, 0.0) if self.offset is None else self.offset
+        length = self.lengths.get(self.tool or 0, self.offset or 0.0)
         measured = length if self.leans < MEASURED else 0.0
         zero = {**self.zero, **self.work_zero(measured)}
         # One unit of that slide's word is a mm along it, whichever way it points.

@@ -41,3 +41,19 @@ fn a_program_whose_place_cannot_be_told_is_said_to_be_lost_and_not_judged() {
     assert!(told.contains("more than 10000 pieces"), "{told}");
     assert!(told.contains("1 error"), "{told}");
 }
+
+/// One motion is held against more pieces of the path than one place may be.
+#[test]
+fn a_large_circle_is_no_place_where_a_program_is_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (course, program) = (place("large.cls"), place("large.nc"));
+    let text = "PARTNO/LARGE\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/1500,0,50\nFEDRAT/500,MMPM\n\
+                GOTO/1500,0,0\nCIRCLE/0,0,0,0,0,1,1500\nGOTO/1500,0,0\nRAPID\nGOTO/1500,0,50\nFINI\n";
+    fs::write(&course, text).unwrap();
+    let words =
+        ["-q", "-m", "head-head", "--tool-length", "100", "--verify", "-o", &program, &course];
+    let run = post(&words);
+    assert_eq!(run.code, 0, "{}", run.err);
+    assert!(fs::read_to_string(&program).unwrap().contains("G3 X1500."));
+}

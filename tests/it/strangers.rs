@@ -23,16 +23,21 @@ fn library(folder: &Path, name: &str) -> PathBuf {
 /// A folder with the dialect `hostile`, which has one fault.
 fn hostile(fault: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
+    made("hostile.c", fault, &library(folder.path(), "hostile"));
+    folder
+}
+
+/// Compiles `source` with one fault.
+fn made(source: &str, fault: &str, library: &Path) {
     let done = Command::new("cc")
         .args(["-O2", "-shared", "-fPIC", &format!("-DFAULT_{fault}"), "-I"])
         .arg(root().join("plugins/api/include"))
-        .arg(root().join("plugins/host/tests/c/hostile.c"))
+        .arg(root().join("plugins/host/tests/c").join(source))
         .arg("-o")
-        .arg(library(folder.path(), "hostile"))
+        .arg(library)
         .args(["-lm", "-pthread"])
         .status();
     assert!(done.unwrap().success());
-    folder
 }
 
 /// Posts the blade to `part.nc` in a folder, in the dialect of `fault`.
@@ -126,6 +131,34 @@ fn a_plugin_that_does_not_return_is_stopped() {
         assert!(done.err.contains(message), "{fault}: {}", done.err);
         refused(fault, &done, &folder);
     }
+}
+
+#[test]
+fn a_plugin_that_never_stops_talking_is_stopped_too() {
+    let (done, folder) = post_with("DRIPS", &["-o", "part.nc", "--plugin-seconds", "0.3"]);
+    let message =
+        "it did not return within 0.3 s and was stopped in the middle of its work (`write` of ";
+    assert!(done.err.contains(message), "{}", done.err);
+    refused("DRIPS", &done, &folder);
+
+    // An error model that asks and asks; what the host does meanwhile takes no time of its own.
+    let plugins = tempfile::tempdir().unwrap();
+    made("hostile_model.c", "ASKS_ON", &library(plugins.path(), "hostile_model"));
+    let words = ["-m", "ac-trunnion", "--set", "accuracy.model=\"hostile_model\"", "--trust-model"];
+    let done = run(
+        command()
+            .args(words)
+            .args(["-o", "-", "--plugin-seconds", "0.5", "--plugins"])
+            .arg(plugins.path())
+            .arg(root().join(sample("blade.cls"))),
+        b"",
+    );
+    assert_eq!((done.code, done.out.as_str()), (1, ""), "{}", done.err);
+    let late = done.err.contains(
+        "it did not return within 0.5 s and was stopped in the middle of its work (`fit` of ",
+    );
+    let often = done.err.contains("it asks for more than 1048576 deviations of one move");
+    assert!(late || often, "{}", done.err);
 }
 
 #[test]
@@ -263,6 +296,17 @@ fn what_a_plugin_prints_is_no_part_of_the_program() {
     assert_eq!((named.code, &named.out), (0, &done.out), "{}", named.err);
     // It is not lost either.
     assert!(done.err.contains("plugin `hostile` prints: G0 Z-500\n"), "{}", done.err);
+}
+
+#[test]
+fn what_a_plugin_prints_without_an_end_is_told_as_it_is_closed() {
+    let (done, _) = post_with("PRINTS_BIT", &["-q", "-o", "part.nc"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(
+        done.err.contains("plugin `hostile` prints: a line that does not end\n"),
+        "{}",
+        done.err
+    );
 }
 
 #[test]

@@ -863,3 +863,40 @@ fn no_tool_comes_back_to_a_cut_while_its_spindle_stands() {
         "error[spindle]: the spindle stands where the tool comes back to a cut",
     );
 }
+
+const TWO_HOLES: &str = "\
+PARTNO/TWO
+UNITS/MM
+LOADTL/1
+SPINDL/RPM,1000,CLW
+RAPID
+GOTO/0,0,50
+CYCLE/DRILL,DEPTH,10,MMPM,200,CLEAR,2
+GOTO/0,0,0
+GOTO/40,0,0
+CYCLE/OFF
+RAPID
+GOTO/40,0,50
+FINI
+";
+
+/// A feed upwards at the mouth of a hole, or none at all, drills nothing.
+#[test]
+fn a_hole_is_drilled_by_what_goes_down_it_alone() {
+    let holes = Posted::new(TWO_HOLES, "fanuc");
+    let last =
+        "error[missing]: the program ends, and what lines 9 to 9 of the CL file ask for is not cut";
+    let behind = "X40.000\nG80\nG0 Z50.000\n";
+    for up in
+        ["G1 Z50.000 F5000.\n", "G1 Z2.100 F200.\nG0 Z50.000\n", "G1 Z2.000 F200.\nG0 Z50.000\n"]
+    {
+        holes.told((behind, &format!("G80\nG0 X40.000\n{up}")), last);
+    }
+    holes.told(
+        (
+            "G94 G99 G81 X0.000 Y0.000 Z-10.000 R2.000 F200.\nX40.000\n",
+            "G94 G1 Z3.000 F200.\nG0 X40.000 Z2.000\nG99 G81 X40.000 Y0.000 Z-10.000 R2.000 F200.\n",
+        ),
+        "error[missing]: line 8 of the CL file is not cut",
+    );
+}

@@ -517,6 +517,12 @@ impl<C: Course> Verifier<'_, C> {
     }
 }
 
+/// Whether a motion goes down the axis of a hole.
+pub(super) fn goes_down(hole: &Element, places: &[ToolPlace]) -> bool {
+    let axis = HoleAxis::of(hole);
+    axis.split(&places[places.len() - 1]).0 > axis.split(&places[0]).0
+}
+
 /// What is asked of a hole, a thread's feed by the speed that is printed: its pitch counts, and S has no decimals.
 fn at_the_speed_of(motion: &Motion, element: &Element) -> Element {
     let mut element = element.clone();

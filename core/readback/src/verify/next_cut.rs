@@ -2,6 +2,7 @@
 
 use super::detour::Detour;
 use super::feed_sum::FeedSum;
+use super::hole::goes_down;
 use super::place::{PlaceDistance, ShareSpan, ToolPlace, free};
 use super::report::{BlockPlace, lines_of};
 use super::sweep::StrayStretch;
@@ -87,14 +88,22 @@ impl<C: Course> Verifier<'_, C> {
 
     /// A cut that was left goes on here, or the next one begins.
     pub(super) fn may_cut(&mut self, place: &ToolPlace) -> bool {
+        self.may_go_on(place) || self.may_be_first(place)
+    }
+
+    /// A cut that was left goes on here.
+    pub(super) fn may_go_on(&self, place: &ToolPlace) -> bool {
         let bound = self.bound;
         let kept = self.reach.iter().zip(self.track.kept());
         let goes_on = kept.filter(|(span, element)| !span.is_empty() && element.is_cut());
         let mut goes_on = goes_on
             .map(|(span, element)| span.meet(&free(place, &element.from, &element.to, &bound)));
-        if goes_on.any(|span| !span.is_empty()) {
-            return true;
-        }
+        goes_on.any(|span| !span.is_empty())
+    }
+
+    /// The next cut begins here, or the next hole.
+    pub(super) fn may_be_first(&mut self, place: &ToolPlace) -> bool {
+        let bound = self.bound;
         self.due().is_some_and(|element| {
             !matches!(element.what, ElementKind::Way | ElementKind::Reach(_))
                 && place.within(&element.from, &bound)
@@ -179,10 +188,13 @@ impl<C: Course> Verifier<'_, C> {
                 ElementKind::Cut | ElementKind::Thread => {
                     free(place, &element.from, &element.to, &bound)
                 }
-                ElementKind::Hole(_) => match place.within(&element.from, &bound) {
-                    true => ShareSpan::WHOLE,
-                    false => ShareSpan::EMPTY,
-                },
+                ElementKind::Hole(_) => {
+                    let ends = [*place, ToolPlace::new(&motion.to.pose, self.along)];
+                    match place.within(&element.from, &bound) && goes_down(element, &ends) {
+                        true => ShareSpan::WHOLE,
+                        false => ShareSpan::EMPTY,
+                    }
+                }
                 _ => ShareSpan::EMPTY,
             };
             if !near.is_empty() {

@@ -7,6 +7,7 @@
 //! A motion that finds no way strays. Then the bound is widened until there is one, which says how far the program is
 //! off, and it stays wide until the program is back on the course.
 
+use super::hole::goes_down;
 use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
 use super::report::{BlockPlace, lines_of};
 use super::track::{ElementKind, MOST_AT_ONCE};
@@ -104,9 +105,15 @@ impl<C: Course> Verifier<'_, C> {
             self.set_kind("rapid");
             return true;
         }
-        // What is due goes first.
-        if self.may_cut(&places[0]) {
+        let hole = self.hole_is_due();
+        let into_hole = hole && self.due().is_some_and(|due| goes_down(due, places));
+        // What is due goes first; a hole is drilled by what goes down, and stays due else.
+        if self.may_go_on(&places[0]) || (!hole || into_hole) && self.may_be_first(&places[0]) {
             return false;
+        }
+        if hole && stands(places) {
+            self.set_kind("rapid");
+            return true;
         }
         if self.pecks_again(motion, places) {
             return true;
@@ -343,6 +350,8 @@ impl<C: Course> Verifier<'_, C> {
         let (mut line, mut off) = (0, f64::INFINITY);
         // What can be reached of the program's piece at the beginning of the element.
         let mut below = ShareSpan::EMPTY;
+        // What it was held against already.
+        let mut met = 0;
         let mut index = 0;
         while index < reach.len() || !below.is_empty() {
             let left = reach.get(index).copied().unwrap_or(ShareSpan::EMPTY);
@@ -351,10 +360,11 @@ impl<C: Course> Verifier<'_, C> {
                 index += 1;
                 continue;
             }
-            if index >= MOST_AT_ONCE {
+            if met == MOST_AT_ONCE {
                 column.cut_short = true;
                 break;
             }
+            met += 1;
             let Some(element) = self.track.get(index) else {
                 break;
             };

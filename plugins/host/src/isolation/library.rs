@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::Limits;
-use super::message::{Description, Request};
+use super::message::Description;
 use super::process::Process;
 use crate::call::LoadedLibrary;
 use crate::described::FunctionTable;
@@ -108,7 +108,7 @@ impl IsolatedLibrary {
         if !process.is_alive() || self.unclosed().is_some() {
             return;
         }
-        match process.ask::<()>(&Request::Close) {
+        match process.close() {
             Ok(()) => self.take_back(process),
             Err(message) => {
                 self.unclosed().get_or_insert(message);

@@ -87,7 +87,8 @@ impl Printed {
         }
     }
 
-    fn tell_line(&mut self) {
+    /// Tells the line that was begun.
+    pub(crate) fn tell_line(&mut self) {
         let line = std::mem::take(&mut self.line);
         let shown = sentence(&String::from_utf8_lossy(&line));
         if !shown.is_empty() {

@@ -146,15 +146,17 @@ impl Process {
         let asked = Instant::now();
         let (child, printed, most) = (&self.child, &mut self.printed, *left);
         let received = self.channel.receive(|connection| {
-            while !is_heard(connection, printed)? {
+            loop {
+                let heard = is_heard(connection, printed)?;
                 match () {
+                    // However much it says meanwhile.
                     () if asked.elapsed() > most => return Err(ErrorKind::TimedOut.into()),
+                    () if heard => return Ok(()),
                     // What it has started may hold the connection open.
                     () if has_ended(child) => return Err(ErrorKind::UnexpectedEof.into()),
                     () => {}
                 }
             }
-            Ok(())
         });
         let answer = received.and_then(|mut bytes| {
             let answer = R::take(&mut bytes).filter(|_| bytes.is_empty());
@@ -164,6 +166,13 @@ impl Process {
         self.printed.tell();
         *left = left.saturating_sub(asked.elapsed());
         answer.map_err(|error| self.died(function, &error))
+    }
+
+    /// Has it close what it has open; all that it has printed is told then.
+    pub(crate) fn close(&mut self) -> Result<(), String> {
+        let closed = self.ask::<()>(&Request::Close);
+        self.printed.tell_line();
+        closed
     }
 
     /// How many of the `count` events of the last batch it said to have written.
@@ -180,6 +189,13 @@ impl Process {
     /// It may be asked.
     pub(crate) fn is_alive(&self) -> bool {
         self.dead.is_none()
+    }
+
+    /// Ends it, whatever it is at, and says why.
+    pub(crate) fn stop(&mut self, message: String) -> String {
+        self.end();
+        self.dead = Some(message.clone());
+        message
     }
 
     /// It answers no more: says why, and ends it with what it has started.

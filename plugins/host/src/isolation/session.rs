@@ -13,7 +13,7 @@ use crate::function::Function;
 use crate::shown::sentence;
 use crate::{GivenValue, ProgramSetup, Reason};
 
-/// Most places of a move that a model may ask for at once, and places at which its curve is asked.
+/// Most places of a move that a model may ask for, at once or one by one.
 const MOST_PLACES: usize = 1 << 20;
 
 /// A process that serves one program.
@@ -169,13 +169,20 @@ impl IsolatedModel {
         let mut left = self.session.library.limits().call;
         let process = self.session.process()?;
         process.send(Function::Fit, |to| Request::Fit(*tolerance).put(to))?;
+        let mut asked = 0;
         loop {
             match process.answer(Function::Fit, &mut left)? {
                 Fitted::Answers(answer) => return Ok(answer.map(|curve| *curve)),
                 Fitted::Wants(places) => {
-                    let count = places.len().min(MOST_PLACES);
-                    let mut found: Deviations = vec![Deviation::default(); count];
-                    deviation(&places[..count], &mut found);
+                    // One that asks for nothing asks all the same.
+                    asked += places.len().max(1);
+                    if asked > MOST_PLACES {
+                        let message =
+                            format!("it asks for more than {MOST_PLACES} deviations of one move");
+                        return Err(process.stop(message));
+                    }
+                    let mut found: Deviations = vec![Deviation::default(); places.len()];
+                    deviation(&places, &mut found);
                     process.send(Function::Fit, |to| found.put(to))?;
                 }
             }

@@ -107,6 +107,19 @@ static void dies(size_t at) {
         if (write(file, "ten bytes.", 10) < 0)
             continue;
 #endif
+#ifdef FAULT_DRIPS
+    /* a long answer, a byte at a time */
+    uint64_t length = 1u << 25;
+    for (int file = 3; file < 64; file++)
+        if (write(file, &length, sizeof length) < 0)
+            continue;
+    for (;;) {
+        for (int file = 3; file < 64; file++)
+            if (write(file, "x", 1) < 0)
+                continue;
+        usleep(20000);
+    }
+#endif
 #ifdef FAULT_KILLS_ITSELF
     raise(SIGKILL);
 #endif
@@ -166,6 +179,9 @@ static void *open_(const PostSetup *setup, const PostSink *error) {
 #endif
 #ifdef FAULT_FORGES
     fprintf(stderr, "error[travel]: X is \033[2Jpast its travel\n  --> part.nc:1\n");
+#endif
+#ifdef FAULT_PRINTS_BIT
+    fprintf(stderr, "a line that does not end");
 #endif
 #ifdef FAULT_PRINTS_ON
     for (int line = 0; line < 300000; line++)

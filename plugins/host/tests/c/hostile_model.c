@@ -24,6 +24,10 @@ static int32_t fit(void *ctx, const PostTolerance *tolerance, PostDeviationFn de
 #elif defined FAULT_ALIGN
     deviation(host, 1, (const double *)((const char *)t + 1), found);
 #endif
+#ifdef FAULT_ASKS_ON
+    for (;;)
+        deviation(host, 2, t, found);
+#endif
     deviation(host, 1, t, found);
     PostCurve flat = {0};
     flat.tip_peak = found[0].tip[0];

@@ -131,10 +131,11 @@ def test_a_signal_at_any_moment(sent: signal.Signals, folder: Path) -> None:
     before = whole[1]
     for round_ in range(count):
         line, new, least = lines[round_ % 2], whole[round_ % 2], times[round_ % 2]
-        child = subprocess.Popen([COMMAND, *line], cwd=folder, env=environment, stderr=subprocess.DEVNULL)
+        child = subprocess.Popen([COMMAND, *line], cwd=folder, env=environment, stderr=subprocess.PIPE, text=True)
         time.sleep(float(moment.uniform(0.0, 1.1 * least)))
         child.send_signal(sent)
-        code = child.wait(timeout=60)
+        _, said = child.communicate(timeout=60)
+        code = child.returncode
         found = stand(folder, PAIR)
         if sent == signal.SIGKILL:
             for name in PAIR:
@@ -150,6 +151,9 @@ def test_a_signal_at_any_moment(sent: signal.Signals, folder: Path) -> None:
             assert not left(folder), (round_, code, left(folder))
             # Before the handlers are there a signal ends the command as ever.
             assert code in (0, 128 + sent, -sent), code
+            if code == 128 + sent and before != new:
+                told = "no file was written" if found == before else "3 files were written, and are whole"
+                assert said.endswith(f"interrupted; {told}\n"), (said, found == before)
         seen[code, "new" if found == new else "before"] += 1
         before = found
     print(sent.name, dict(seen), f"{len(left(folder))} files left")

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::{Run, command, run};
+use crate::common::{Run, command, post_in, run};
 
 /// A cut with the tool along `axis`, from 50 mm above.
 fn cut(axis: &str) -> String {
@@ -438,4 +438,35 @@ fn a_length_in_the_work_offset_is_that_of_the_tool_in_the_spindle() {
     let [one, two] = [&[1][..], &[2]].map(words);
     assert_ne!(one.replace("T1", "T"), two.replace("T2", "T"));
     words(&[2, 1]);
+}
+
+/// What keeps the tip, or turns a plane, takes the tool's direction from the plane of the tool too.
+#[test]
+fn a_plane_that_lays_the_tool_along_another_axis_is_refused_where_the_control_keeps_the_tip() {
+    let folder = tempfile::tempdir().unwrap();
+    for (machine, sample, [from, to]) in [
+        ("dmu50", "blade.cls", ["TOOL CALL 3 Z", "TOOL CALL 3 Y"]),
+        ("dmu50", "facets.apt", ["TOOL CALL 6 Z", "TOOL CALL 6 X"]),
+        ("ac-trunnion-840d", "blade.cls", ["G17", "G18"]),
+        ("ac-trunnion-840d", "facets.apt", ["G17", "G19"]),
+    ] {
+        let sample = crate::common::root().join(crate::common::sample(sample));
+        let words = ["-q", "-m", machine, "--tool-length", "80", "-o", "part.nc"];
+        let run = post_in(folder.path(), &[&words[..], &[sample.to_str().unwrap()]].concat());
+        assert_eq!(run.code, 0, "{}", run.err);
+        let path = folder.path().join("part.nc");
+        let text = fs::read_to_string(&path).unwrap();
+        for (changed, code) in [(text.clone(), 0), (text.replace(from, to), 1)] {
+            assert!(code == 0 || changed != text, "{machine}: {text}");
+            fs::write(&path, changed).unwrap();
+            let words = ["verify", "part.nc", "-m", machine, "--tool-length", "80", "--against"];
+            let run = post_in(folder.path(), &[&words[..], &[sample.to_str().unwrap()]].concat());
+            assert_eq!(run.code, code, "{machine} {to}: {}", run.err);
+            assert!(
+                code == 0 || run.err.contains("the length of the tool comes on along"),
+                "{}",
+                run.err
+            );
+        }
+    }
 }

@@ -6,6 +6,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 #[cfg(unix)]
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::{Builder, NamedTempFile};
@@ -16,6 +17,9 @@ use super::file_id::folder as folder_of;
 /// Paths of the temporary files that exist. A file is made, renamed and deleted with this locked, so that a signal finds
 /// every one, and never one that has its name already.
 static LIVE: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+/// How many files this run has given their names; counted with the paths locked.
+static NAMED: AtomicUsize = AtomicUsize::new(0);
 
 /// Folders in which this run has deleted what killed runs left, once, however many files it makes there; what was replaced
 /// in each while its run did not come to its end.
@@ -101,6 +105,7 @@ impl Temporary {
         post_host::keep_on_crash(file.path());
         // The error holds the file, which is deleted with it; its name would only puzzle.
         let named = file.persist(target).map(drop);
+        NAMED.fetch_add(named.is_ok().into(), Ordering::Relaxed);
         named.map_err(|fault| match fault.error.raw_os_error() {
             Some(code) => io::Error::from_raw_os_error(code),
             None => fault.error.kind().into(),
@@ -153,8 +158,8 @@ pub fn delete_temporary_files() {
 }
 
 /// From here on a signal that asks the command to end (SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGALRM, SIGUSR1, SIGUSR2,
-/// SIGXCPU) has the temporary files deleted first; the exit code is that of shells: 128 and the signal's number. A file that outgrows the limit of the shell is a
-/// fault of writing and no signal.
+/// SIGXCPU) has the temporary files deleted first, and it is said whether files were written; the exit code is that of
+/// shells: 128 and the signal's number. A file that outgrows the limit of the shell is a fault of writing and no signal.
 #[cfg(unix)]
 pub fn delete_on_signals() {
     use signal_hook::consts::{
@@ -176,6 +181,13 @@ pub fn delete_on_signals() {
     let waiting = move || {
         if let Some(signal) = signals.forever().next() {
             delete_temporary_files();
+            let told = match NAMED.load(Ordering::Relaxed) {
+                0 => "no file was written".to_owned(),
+                1 => "one file was written, and is whole".to_owned(),
+                count => format!("{count} files were written, and are whole"),
+            };
+            // Nobody may be left to tell.
+            let _ = writeln!(io::stderr(), "interrupted; {told}");
             post_host::leave_at_once(128 + signal as u8);
         }
     };

@@ -40,11 +40,13 @@ impl ControlState {
         Ok(())
     }
 
-    /// Why the length of a tool that does not turn the part would come on along another axis than it has: the plane says
-    /// which (SINUMERIK, fundamentals, tool offsets: G17 Z, G18 Y, G19 X).
-    fn lies_off_the_plane(&self) -> Option<String> {
-        // What keeps the tip knows the tool's own direction.
-        if self.machine.spindle.surface_speed || self.machine.control.tcp == Tcp::Control {
+    /// Why the length of a tool that does not turn the part would come on along another axis than it has: the plane across
+    /// the tool says which, that in force (SINUMERIK, fundamentals, tool offsets: G17 Z, G18 Y, G19 X) or that of
+    /// the tool call.
+    pub(super) fn lies_off(&self, plane: ArcPlane, called: Option<&str>) -> Option<String> {
+        // What keeps the tip knows the tool's direction, as long as the program says nothing else.
+        let known = self.machine.control.tcp == Tcp::Control && plane == ArcPlane::Xy;
+        if self.machine.spindle.surface_speed || known {
             return None;
         }
         let place = match self.machine.length_axis {
@@ -52,14 +54,15 @@ impl ControlState {
             LengthAxis::Dialect => self.machine.lies_along()?.0,
             LengthAxis::None => return None,
         };
-        let [word, letter] = match self.modal.plane {
+        let [word, letter] = match plane {
             ArcPlane::Xy => ["G17", "Z"],
             ArcPlane::Zx => ["G18", "Y"],
             ArcPlane::Yz => ["G19", "X"],
         };
         let axes = &self.machine.axes;
         let wanted = axes[place].joint.direction;
-        let third = self.axes.cartesian[self.modal.plane.coordinates()[2]];
+        let word = called.unwrap_or(word);
+        let third = self.axes.cartesian[plane.coordinates()[2]];
         let alike =
             third.is_some_and(|third| libm::fabs(axes[third].joint.direction.dot(&wanted)) > 0.999);
         (!alike).then(|| {
@@ -81,7 +84,7 @@ impl ControlState {
                 self.tools.by_tool = true;
                 self.tools.length_on = edge != 0;
                 self.tools.across = self.modal.plane;
-                if let Some(lack) = self.lies_off_the_plane().filter(|_| edge != 0) {
+                if let Some(lack) = self.lies_off(self.modal.plane, None).filter(|_| edge != 0) {
                     return Err(self.refuse("nc-word", lack));
                 }
                 self.state.length_register = (edge != 0).then_some(edge);

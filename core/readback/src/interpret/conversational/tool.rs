@@ -49,6 +49,9 @@ pub(super) fn call(
     control.tools.length_on = true;
     control.tools.longer = longer;
     control.tools.across = across;
+    if let Some(lack) = control.lies_off(across, Some("TOOL CALL")) {
+        return Err(control.refuse("nc-tool", lack));
+    }
     control.length_changed()?;
     control.left_over(words)
 }

@@ -900,3 +900,39 @@ fn a_hole_is_drilled_by_what_goes_down_it_alone() {
         "error[missing]: line 8 of the CL file is not cut",
     );
 }
+
+const TAPPED: &str = "\
+PARTNO/TAPPED
+UNITS/MM
+LOADTL/1
+SPINDL/1000,CLW
+RAPID
+GOTO/40,40,20
+CYCLE/DRILL,DEPTH,25,MMPM,200,CLEAR,2
+GOTO/40,40,0
+CYCLE/OFF
+RAPID
+GOTO/40,40,50
+LOADTL/2
+SPINDL/500,CLW
+RAPID
+GOTO/40,40,20
+CYCLE/TAP,DEPTH,15,MMPM,500,CLEAR,2
+GOTO/40,40,0
+CYCLE/OFF
+RAPID
+GOTO/40,40,50
+FINI
+";
+
+/// The hole is there, and the tap is larger.
+#[test]
+fn no_rapid_goes_into_a_hole_that_its_tool_has_still_to_make() {
+    let tapped = Posted::new(TAPPED, "fanuc");
+    for (to, by) in [("1", "1"), ("0", "2"), ("-14", "16"), ("-24", "26")] {
+        let message = format!(
+            "error[hole]: a rapid goes into a hole that this tool has still to make, {by}.000 mm below where its feed begins"
+        );
+        tapped.told(("H2 Z20.000\n", &format!("H2 Z{to}.000\n")), &message);
+    }
+}

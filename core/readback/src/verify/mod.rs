@@ -373,6 +373,8 @@ impl<'m, C: Course> Verifier<'m, C> {
                 self.look_for_a_cut(line);
                 self.turned.clear();
                 self.cut_end = None;
+                // What was drilled is a hole of the tool before.
+                self.made = None;
                 if self.arm && !self.rules.own {
                     // Wherever another hand has the arm go for it.
                     self.detour = Detour::default();

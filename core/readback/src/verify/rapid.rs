@@ -5,6 +5,7 @@ use post_machine::kinematics::Pose;
 use post_motion::path::nearest_share;
 
 use super::detour::{RapidAllowance, StrayKind};
+use super::hole::below_mouth;
 use super::place::{PlaceBound, ShareSpan, ToolPlace, free, nearest};
 use super::report::BlockPlace;
 use super::sweep::draws_back;
@@ -35,6 +36,7 @@ impl<C: Course> Verifier<'_, C> {
         if self.placed || !motion.machine {
             self.pass(motion, places);
         }
+        self.look_how_deep(motion, places);
         self.apart = true;
         let known = self.placed;
         if known && self.pecks_again(motion, places) {
@@ -94,6 +96,26 @@ impl<C: Course> Verifier<'_, C> {
         };
         self.fault("rapid", message, Some(motion), Some(line), Some(most));
         false
+    }
+
+    /// Looks that no rapid goes into the hole that is due: where another tool has drilled before, a larger one, or a tap,
+    /// breaks.
+    fn look_how_deep(&mut self, motion: &Motion, places: &[ToolPlace]) {
+        let bound = self.bound;
+        let tool = motion.state.tool;
+        let Some(due) = self.due() else {
+            return;
+        };
+        if !matches!(due.what, ElementKind::Hole(_)) || tool.is_some() && due.asked.tool != tool {
+            return;
+        }
+        let (line, by) = (due.line, below_mouth(due, &places[places.len() - 1], &bound));
+        if by <= bound.point || self.goes_into_made(motion, places) {
+            return;
+        }
+        let key = "a rapid goes into a hole that this tool has still to make".to_owned();
+        let message = format!("{key}, {by:.3} mm below where its feed begins");
+        self.limit_fault("hole", key, message, motion, line, by);
     }
 
     /// Looks how low rapids go to holes: to the first, and from one to the next along the same axis, none goes across

@@ -289,8 +289,7 @@ impl<C: Course> Verifier<'_, C> {
         let mut down = false;
         for ends in places.windows(2) {
             let ((from, _), (to, off)) = (axis.split(&ends[0]), axis.split(&ends[1]));
-            let on_axis =
-                off.point <= bound.point && PlaceBound::new(1.0, off.axis).axis <= bound.axis;
+            let on_axis = off.is_within(&bound);
             if rapid {
                 let depth = from.max(to);
                 if !on_axis && depth > bound.point {
@@ -366,7 +365,7 @@ impl<C: Course> Verifier<'_, C> {
     /// Compares how far a cut in a hole is off its axis.
     fn compare_hole(&mut self, motion: &Motion, element: &Element, worst: PlaceDistance) {
         let bound = self.bound;
-        if worst.point > bound.point || PlaceBound::new(1.0, worst.axis).axis > bound.axis {
+        if !worst.is_within(&bound) {
             let message = format!(
                 "a hole is {:.3} mm or {:.3}° off its axis",
                 worst.point,
@@ -518,8 +517,7 @@ impl<C: Course> Verifier<'_, C> {
 /// How far a place on the axis of a hole is below the level where its feed begins, mm; zero beside that axis.
 pub(super) fn below_mouth(hole: &Element, place: &ToolPlace, bound: &PlaceBound) -> f64 {
     let (depth, off) = HoleAxis::of(hole).split(place);
-    let on_axis = off.point <= bound.point && PlaceBound::new(1.0, off.axis).axis <= bound.axis;
-    if on_axis { depth.max(0.0) } else { 0.0 }
+    if off.is_within(bound) { depth.max(0.0) } else { 0.0 }
 }
 
 /// Whether a motion goes down the axis of a hole.

@@ -104,6 +104,11 @@ impl PlaceBound {
 }
 
 impl PlaceDistance {
+    /// Whether two places so far apart are one within `bound`, which has chords of directions.
+    pub fn is_within(&self, bound: &PlaceBound) -> bool {
+        self.point <= bound.point && PlaceBound::new(1.0, self.axis).axis <= bound.axis
+    }
+
     pub fn larger(&self, other: &Self) -> Self {
         Self { point: self.point.max(other.point), axis: self.axis.max(other.axis) }
     }

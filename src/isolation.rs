@@ -20,7 +20,7 @@ pub struct IsolationArguments {
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     plugin_seconds: Option<Duration>,
 
-    /// Memory that the process of a library may have, MiB, 2048 if it is not said.
+    /// Memory that a library may take in its process, MiB, 2048 if it is not said.
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u64).range(64..=1 << 24))]
     plugin_memory: Option<u64>,
 }

@@ -61,9 +61,6 @@ pub fn run_to_end(job: impl FnOnce(&Session) -> Result<(), CommandFault> + Send)
     if !warnings.is_empty() {
         session.findings(&warnings);
     }
-    let code = done.as_ref().map_or_else(CommandFault::exit_code, |()| 0);
-    if let Err(fault) = done {
-        terminal::explain(&session, fault);
-    }
+    let code = done.map_or_else(|fault| terminal::explain(&session, fault), |()| 0);
     post_host::leave(code)
 }

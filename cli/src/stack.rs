@@ -1,16 +1,13 @@
 //! Room for deep calls, whatever the shell has limited the stack to (`ulimit -s`): a parser that finds too little of it takes
 //! a good file for a wrong one.
 
-/// As much as the first thread of a process mostly has.
-#[cfg(unix)]
-const STACK: usize = 8 << 20;
-
 /// Runs `job` on this thread, or on one with more room if this one has less.
 #[cfg(unix)]
 pub(crate) fn with_room<R: Send>(job: impl FnOnce() -> R + Send) -> R {
     use std::panic::resume_unwind;
     use std::thread;
 
+    use post_posting::STACK;
     use rustix::process::{Resource, getrlimit};
 
     let room = getrlimit(Resource::Stack).current.unwrap_or(u64::MAX);

@@ -9,6 +9,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use post_job::STACK;
 use post_job::library::{Refusal, StopSignal};
 use post_machine::diagnostic::Diagnostic;
 use pyo3::prelude::*;
@@ -17,9 +18,6 @@ use crate::refusal;
 
 /// So long nobody asks whether the user has pressed Ctrl-C: asking takes the interpreter's lock.
 const BETWEEN: Duration = Duration::from_millis(50);
-
-/// As much as the first thread of a process mostly has.
-const STACK: usize = 8 << 20;
 
 /// Does `job` while other threads run Python, and Ctrl-C ends it soon. Python tells its signals to the thread that waits
 /// here alone, so that the job has one of its own: it asks a flag, wherever it works.

@@ -258,7 +258,9 @@ fn program_and_summary_take_their_names_together_or_not_at_all() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_table_that_cannot_be_printed_is_a_fault() {
-    for arguments in [&["words"][..], &["machines"], &["schema"], &["check", "vmc"]] {
+    for arguments in
+        [&["words"][..], &["machines"], &["schema"], &["check", "vmc"], &["--help"], &["--version"]]
+    {
         let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
         let done = command().args(arguments).stdout(full).output().unwrap();
         let err = String::from_utf8(done.stderr).unwrap();

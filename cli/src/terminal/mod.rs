@@ -91,16 +91,23 @@ pub fn tell(text: &str) {
     let _ = stderr.flush();
 }
 
-/// Says why the command failed.
-pub fn explain(session: &Session, fault: CommandFault) {
+/// Says why the command failed, and what it ends with. Help that could not be printed is a failure of its own.
+pub fn explain(session: &Session, fault: CommandFault) -> u8 {
+    let code = fault.exit_code();
     match fault {
         CommandFault::Usage(error) => {
             let plain = error.render().to_string();
             match printable(&plain) {
                 // Colours are the terminal's own here.
-                Cow::Borrowed(_) => {
-                    let _ = error.print();
-                }
+                Cow::Borrowed(_) => match error.print() {
+                    Err(fault)
+                        if !error.use_stderr() && fault.kind() != io::ErrorKind::BrokenPipe =>
+                    {
+                        let fault = FileFault::write_named("standard output", fault);
+                        return explain(session, CommandFault::Job(fault.into()));
+                    }
+                    _ => {}
+                },
                 Cow::Owned(legible) => tell(&legible),
             }
         }
@@ -109,4 +116,5 @@ pub fn explain(session: &Session, fault: CommandFault) {
             session.findings(&failure.findings());
         }
     }
+    code
 }

@@ -5,11 +5,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::thread::{self, Scope};
 
+use post_posting::STACK;
+
 /// Batches that are made and not taken yet, at most.
 const ON_THE_WAY: usize = 4;
-
-/// As much as the first thread of a process mostly has.
-const STACK: usize = 8 << 20;
 
 /// Makes batches in order.
 pub trait Maker: Send {

@@ -74,6 +74,7 @@ use crate::session::Session;
 use crate::settings::JobSettings;
 pub use dry_run::DryRun;
 use look_ahead::look_ahead;
+pub use post_posting::STACK;
 pub use posting_pass::try_opening;
 
 /// What tests of single files reach; no part of the face.

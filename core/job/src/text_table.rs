@@ -1,6 +1,9 @@
-//! Tables as people are shown them: rows of a name and its value, and columns below their heads.
+//! Tables as people are shown them: rows of a name and its value, and columns below their heads. A line feed in a file's
+//! name begins no line of them.
 
 use std::fmt::{Display, Write as _};
+
+use post_grammar::text::escaped;
 
 /// Rows of a name and its value; a row without a name goes on with the value above it.
 #[derive(Clone, Debug, Default)]
@@ -28,7 +31,9 @@ impl NamedValues {
 
     /// A line a row: names are `width` letters wide, and values begin one blank behind them.
     pub fn lines(&self, width: usize) -> String {
-        let lines = self.rows.iter().map(|[name, value]| format!("{name:<width$} {value}\n"));
+        let lines = self.rows.iter().map(|[name, value]| {
+            format!("{:<width$} {}\n", escaped(name, &[]), escaped(value, &[]))
+        });
         lines.collect()
     }
 
@@ -63,7 +68,8 @@ impl TextTable {
 
     /// Adds a row.
     pub fn row(&mut self, cells: impl Into<Vec<String>>) {
-        self.rows.push(cells.into());
+        let cells: Vec<String> = cells.into();
+        self.rows.push(cells.iter().map(|cell| escaped(cell, &[]).into_owned()).collect());
     }
 
     /// A line a row.

@@ -47,7 +47,7 @@ pub use blocks::{
     BlockDuration, BlockKind, BlockNote, BlockReason, MotionBlock, NominalTime, PlannedTime,
 };
 pub use configuration::{BodyClearance, ClearTool, Contact, TrialWay, TrialWayKind, whole_pass};
-pub use emit::SpareWork;
+pub use emit::{STACK, SpareWork};
 pub use findings::MOST_FAULTS;
 pub use job_facts::{JobFacts, ProgramPreview};
 pub use mount_bounds::MountBounds;

@@ -34,6 +34,11 @@ pub enum Reason {
         /// The system's words.
         message: String,
     },
+    /// The system gives it no process of its own.
+    NoProcess {
+        /// The system's words.
+        message: String,
+    },
     /// The library does not export what its name promises.
     NoSymbol {
         /// The symbol looked for.
@@ -143,6 +148,7 @@ impl PluginFault {
             Reason::Open { .. } => {
                 "the plugin must be a shared library built for this system".to_owned()
             }
+            Reason::NoProcess { .. } => "--no-isolate does without".to_owned(),
             Reason::NoSymbol { .. } | Reason::NotAPlugin => {
                 "check that this is a plugin of post, and that the file was not renamed".to_owned()
             }
@@ -181,6 +187,9 @@ impl fmt::Display for PluginFault {
                 write!(f, "the file of a plugin is called {pattern}")
             }
             Reason::Open { message } => write!(f, "it cannot be opened: {message}"),
+            Reason::NoProcess { message } => {
+                write!(f, "no process of its own can be started: {message}")
+            }
             Reason::NoSymbol { symbol } => write!(f, "it does not export `{symbol}`"),
             Reason::NotAPlugin => f.write_str("what it exports is not a plugin of post"),
             Reason::OtherContract { found, wanted } => write!(

@@ -7,11 +7,12 @@ const LONGEST: usize = 1000;
 const LONGEST_LINE: usize = 200;
 
 /// No line of a program holds such a letter: a control would read it as the end of a line, leave it out, or show the
-/// line in another order than it is read (the marks of writing from right to left).
+/// line in another order than it is read (the marks of writing from right to left); nobody would see it.
 pub(crate) fn is_odd(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{2028}' | '\u{2029}')
-        || matches!(letter, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+        || matches!(letter, '\u{ad}' | '\u{200b}'..='\u{200d}' | '\u{2060}'..='\u{2064}' | '\u{feff}')
 }
 
 /// A plugin's sentence on one line, cut where it is long.
@@ -52,7 +53,8 @@ mod tests {
 
     #[test]
     fn nothing_that_moves_a_cursor_is_left() {
-        let hostile = "a\u{1b}[2Jb\rc\u{85}d\u{2028}e\u{202e}f\u{0}g\u{9b}h\n";
+        let hostile =
+            "a\u{1b}[2Jb\rc\u{85}d\u{2028}e\u{202e}\u{61c}\u{200b}\u{feff}f\u{0}g\u{9b}h\n";
         for text in [sentence(hostile), quoted(hostile)] {
             assert!(!text.contains(is_odd), "{text}");
         }

@@ -8,6 +8,7 @@ use std::thread;
 use std::time::Duration;
 
 use post_machine::diagnostic::Diagnostic;
+use post_posting::STACK;
 
 use super::JobStudy;
 use super::inputs::Inputs;
@@ -17,9 +18,6 @@ use super::outcome::JobOutcome;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::settings::ThreadSettings;
-
-/// As much as the first thread of a process mostly has.
-const STACK: usize = 8 << 20;
 
 /// How often whoever waits is asked whether to go on.
 const LOOK: Duration = Duration::from_millis(50);

@@ -98,8 +98,8 @@ pub enum TimeLimit {
 /// So many set-points are made of one block at most: the work of some seconds.
 pub const MOST_OF_BLOCK: f64 = 1e7;
 
-/// Set-points are made of a program up to this time, s: 30 days.
-pub const MOST_SECONDS: f64 = 30.0 * 86_400.0;
+/// Set-points are made of a program up to this time, s: a week, the work of some minutes.
+pub const MOST_SECONDS: f64 = 7.0 * 86_400.0;
 
 /// What has come of a call of [`Planner::fill`].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -37,7 +37,7 @@ use limits::LimitWatch;
 use state::{
     ClampState, CompensationState, CoolantState, PlaneState, ProgramSpindle, SmoothingState,
 };
-pub use text_thread::SpareWork;
+pub use text_thread::{STACK, SpareWork};
 use texts::ProgramTexts;
 use writer::EventWriter;
 

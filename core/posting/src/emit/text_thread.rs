@@ -22,8 +22,8 @@ const TOGETHER: usize = 2048;
 /// So many times [`TOGETHER`] are on the way at most.
 const ON_THE_WAY: usize = 4;
 
-/// As much as the first thread of a process mostly has: a dialect may want it.
-const STACK: usize = 8 << 20;
+/// Stack of a thread that runs a dialect or reads a file, bytes: as much as the first thread of a process mostly has.
+pub const STACK: usize = 8 << 20;
 
 /// What goes to the thread.
 enum Work<'a> {

@@ -1,6 +1,5 @@
 //! A library that is open in processes of its own.
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -74,12 +73,8 @@ pub(crate) fn open(
 
 /// A process that has opened the library, and what that is.
 fn started(name: &str, path: &Path, limits: Limits) -> Result<(Process, Description), Reason> {
-    let cannot = |error: io::Error| Reason::Open {
-        message: format!(
-            "no process of its own can be started: {error} (--no-isolate does without)"
-        ),
-    };
-    let mut process = Process::start(name, path, limits).map_err(cannot)?;
+    let mut process = Process::start(name, path, limits)
+        .map_err(|error| Reason::NoProcess { message: error.to_string() })?;
     let mut left = limits.call;
     let told: Result<Result<Description, Reason>, String> =
         process.answer(Function::Opening, &mut left);

@@ -169,6 +169,7 @@ impl Wire for Reason {
     fn put(&self, to: &mut Vec<u8>) {
         match self {
             Reason::Open { message } => (0_u8, message.clone()).put(to),
+            Reason::NoProcess { message } => (9_u8, message.clone()).put(to),
             Reason::NoSymbol { symbol } => (1_u8, symbol.clone()).put(to),
             Reason::NotAPlugin => 2_u8.put(to),
             Reason::OtherContract { found, wanted } => (3_u8, (*found, *wanted)).put(to),
@@ -204,6 +205,7 @@ impl Wire for Reason {
             6 => Reason::Null { what: Wire::take(from)? },
             7 => Reason::NotAligned { what: Wire::take(from)? },
             8 => Reason::Nonsense { message: Wire::take(from)? },
+            9 => Reason::NoProcess { message: Wire::take(from)? },
             _ => return None,
         })
     }

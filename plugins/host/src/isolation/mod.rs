@@ -42,7 +42,7 @@ pub(crate) use session::{IsolatedDialect, IsolatedModel};
 pub struct Limits {
     /// Of a call into the library; what the host does meanwhile does not count.
     pub call: Duration,
-    /// Bytes of memory, as the system counts addresses.
+    /// Bytes of memory that the library may take, as the system counts addresses.
     pub memory: u64,
 }
 

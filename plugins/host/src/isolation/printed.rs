@@ -76,10 +76,10 @@ impl Printed {
                 self.tell_line();
                 continue;
             }
-            self.line.push(*byte);
-            if self.line.len() == LONGEST {
+            if is_full(self.line.len(), *byte) {
                 self.tell_line();
             }
+            self.line.push(*byte);
         }
         if self.left == 0 {
             self.tell_line();
@@ -101,5 +101,33 @@ impl Printed {
     fn say(&self, line: &str) {
         // Nobody is left to tell that it failed.
         let _ = writeln!(io::stderr(), "plugin `{}` prints: {line}", self.plugin);
+    }
+}
+
+/// A line of so many bytes is told before `next` is taken: a letter of several bytes stays whole.
+fn is_full(bytes: usize, next: u8) -> bool {
+    let begins_letter = next & 0xc0 != 0x80;
+    bytes >= LONGEST + 3 || bytes >= LONGEST && begins_letter
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_line_is_cut_between_letters() {
+        for letter in ["x", "ä", "€", "🔧"] {
+            let (mut length, mut cut) = (0, 0);
+            for byte in letter.repeat(2000).bytes() {
+                if is_full(length, byte) {
+                    assert_eq!(length % letter.len(), 0, "{letter} {length}");
+                    (length, cut) = (0, cut + 1);
+                }
+                length += 1;
+            }
+            assert!(cut > 0);
+        }
+        // What is no letter at all ends all the same.
+        assert!(is_full(LONGEST + 3, 0x80));
     }
 }

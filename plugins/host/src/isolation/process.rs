@@ -181,9 +181,8 @@ impl Process {
     }
 
     /// Nothing has been told yet of the next batch.
-    pub(crate) fn forget_progress(&mut self, count: usize) {
-        // Of more events than there is room for nothing is told.
-        let _ = self.progress.room(count);
+    pub(crate) fn forget_progress(&self, count: usize) {
+        self.progress.forget(count);
     }
 
     /// It may be asked.

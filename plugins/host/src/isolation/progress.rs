@@ -69,15 +69,23 @@ impl Progress {
         unsafe { self.ends.add(EVENTS) }.cast()
     }
 
-    /// Room for the ends of `count` events, none of them told; none if there are too many.
+    /// Room for the ends of `count` events, none of them told; none if there are too many. For the process of the library:
+    /// the host writes there while that waits.
     pub(crate) fn room(&mut self, count: usize) -> Option<&mut [u64]> {
         if count > EVENTS {
             return None;
         }
-        // SAFETY: so long, aligned, and not written by the other process: one of them waits for the other.
-        let room = unsafe { std::slice::from_raw_parts_mut(self.ends.as_ptr(), count) };
-        room.fill(u64::MAX);
-        Some(room)
+        self.forget(count);
+        // SAFETY: so long, aligned, and not written by the host, which waits.
+        Some(unsafe { std::slice::from_raw_parts_mut(self.ends.as_ptr(), count) })
+    }
+
+    /// None of `count` events has been told.
+    pub(crate) fn forget(&self, count: usize) {
+        for index in 0..count.min(EVENTS) {
+            // SAFETY: within the memory. A library that was left alone may write there still, so nothing borrows it.
+            unsafe { self.ends.add(index).as_ptr().write_volatile(u64::MAX) };
+        }
     }
 
     /// How many of `count` events were told to be written.

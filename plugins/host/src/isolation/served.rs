@@ -19,7 +19,7 @@ use crate::dialect::judged_format;
 use crate::leave::{at_once, flush_libraries};
 use crate::library_dialect::LibraryDialect;
 use crate::library_model::LibraryModel;
-use crate::{Plugin, PluginKind, ProgramSetup};
+use crate::{Plugin, PluginKind, ProgramSetup, Reason};
 
 /// The word by which this program is told to serve a library.
 pub(crate) const SERVE: &str = "--serve-plugin";
@@ -53,8 +53,6 @@ fn serve(path: &Path, memory: u64, host: u64) -> io::Result<()> {
     rustix::stdio::dup2_stdout(io::stderr())?;
     Progress::share_function(&shared)?;
     let progress = Progress::of(shared)?;
-    watch(host)?;
-    limit(memory)?;
     let mut server = Server {
         own: std::process::id(),
         channel: Channel::new(UnixStream::from(connection)),
@@ -62,7 +60,10 @@ fn serve(path: &Path, memory: u64, host: u64) -> io::Result<()> {
         opened: Opened::Nothing,
         batch: Batch::default(),
     };
-    let plugin = Plugin::open(path).map_err(|fault| fault.reason);
+    // What the system does not give is no fault of the library.
+    let ready = watch(host).and_then(|()| limit(memory));
+    let ready = ready.map_err(|error| Reason::NoProcess { message: error.to_string() });
+    let plugin = ready.and_then(|()| Plugin::open(path).map_err(|fault| fault.reason));
     let told = plugin.as_ref().map(Description::of).map_err(Clone::clone);
     server.tell(&told)?;
     let Ok(plugin) = plugin else { return Ok(()) };
@@ -71,7 +72,7 @@ fn serve(path: &Path, memory: u64, host: u64) -> io::Result<()> {
     }
 }
 
-/// What the library may take; it cannot be taken back.
+/// What the library may take, beyond what this process has mapped by now; it cannot be taken back.
 fn limit(memory: u64) -> io::Result<()> {
     let most = |resource, most: u64| {
         let before = rustix::process::getrlimit(resource).maximum.unwrap_or(u64::MAX);
@@ -80,8 +81,15 @@ fn limit(memory: u64) -> io::Result<()> {
     };
     most(Resource::Core, 0)?;
     // Not every system knows it.
-    let _ = most(Resource::As, memory);
+    let _ = most(Resource::As, memory.saturating_add(mapped().unwrap_or(0)));
     Ok(())
+}
+
+/// Bytes of addresses that this process has now; none where the system does not tell.
+fn mapped() -> Option<u64> {
+    let told = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let pages: u64 = told.split_ascii_whitespace().next()?.parse().ok()?;
+    pages.checked_mul(rustix::param::page_size() as u64)
 }
 
 /// Ends this process, and what it has started, once the host does not run any more, whatever the library does.

@@ -246,3 +246,59 @@ fn a_plane_of_rounded_angles_moves_no_depth_that_its_length_would_be_missed_for(
         assert!(program.contains("\nG53.1\nG0 X"), "{program}");
     }
 }
+
+/// A plane that leans by 0.06° from the slide of the depth: words across it move that too, by 0.3 mm here, which ended past
+/// its travel and ahead of the tool's length. The tool comes from above.
+#[test]
+fn words_across_a_plane_that_leans_a_little_do_not_come_first() {
+    let folder = tempfile::tempdir().unwrap();
+    for (axis, first) in [("0,0,1", "G0 X"), ("0.001,0,0.9999995", "G0 G43 H2 X")] {
+        let cl = format!(
+            "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3000,CLW\nRAPID\nGOTO/-150,120,100,0.3,0.2,0.932737905\n\
+             FEDRAT/500,MMPM\nGOTO/-150,120,60,0.3,0.2,0.932737905\nRAPID\nGOTO/-150,120,160,0.3,0.2,0.932737905\n\
+             LOADTL/2\nSPINDL/RPM,2000,CLW\nRAPID\nGOTO/150,-80,100,{axis}\nFEDRAT/500,MMPM\nGOTO/150,-80,60,{axis}\n\
+             RAPID\nGOTO/150,-80,150,{axis}\nFINI\n"
+        );
+        fs::write(folder.path().join("part.cls"), cl).unwrap();
+        let words = [
+            &["-m", "head-table-bc", "part.cls", "-o", "part.nc", "--tool-length", "100"][..],
+            &["--set", "accuracy.axis_tolerance=0.01", "--verify"],
+        ];
+        let run = post_in(folder.path(), &words.concat());
+        assert_eq!(run.code, 0, "{axis}: {}", run.err);
+        let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        assert!(program.contains(&format!("\nG53.1\n{first}")), "{axis}: {program}");
+    }
+}
+
+/// What the choice holds beside a pole does not stand upright on the plane of a measured table: the first point of a plane
+/// stands as its plane does, and no axis turns in the cut behind it.
+#[test]
+fn the_first_point_of_a_plane_stands_upright_on_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = "name = \"measured\"\nchain = \"[w C' B' Y' X' b Z (S) t]\"\n[workpiece]\nmount = [-10.578, -11.245, -2.495]\n\
+                   [tool]\ngauge = [-3.762, -0.125, 347.163]\n[axis.C]\nrotary = [-0.003311, 0.005453, 1.000596]\n\
+                   point = [0.961386, -0.770897, 0.70359]\ntravel = [-400, 400]\n[axis.B]\nrotary = [0, 1, 0]\n\
+                   point = [-16.88225, -21.62152, -28.102143]\ntravel = [-400, 400]\n[axis.Y]\nlinear = [0, 1, 0]\n\
+                   travel = [-600, 600]\n[axis.X]\nlinear = [1, 0, 0]\ntravel = [-600, 600]\n[axis.Z]\nlinear = [0, 0, 1]\n\
+                   travel = [-600, 600]\n[control]\ntcp = \"control\"\n[accuracy]\ntolerance = 0.005\n[tools.1]\nlength = 199.84\n";
+    let cl = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/RPM,3310,CLW\nRAPID\nGOTO/-47.426,-32.496,-16.634,0,0,1\nFEDRAT/1016,MMPM\n\
+              GOTO/-47.426,-32.496,-43.998,0,0,1\nMOVARC/-76.0687,-30.5823,-43.998,0,0,-1,28.7064,ANGLE,163.4879\n\
+              GOTO/-104.0738503,-36.8885074,-43.998,0,0,1\nGOTO/-45.274,-43.139,-32.642,0,0,1\nRAPID\nGOTO/-45.274,-43.139,-7.642,0,0,1\n\
+              SPINDL/RPM,8949,CLW\nRAPID\nGOTO/48.004,-36.573,27.893,0,0,1\nFEDRAT/2444,MMPM\nGOTO/48.004,-36.573,3.537,0,0,1\n\
+              RAPID\nGOTO/48.004,-36.573,28.537,0,0,1\nFINI\n";
+    fs::write(folder.path().join("mine.toml"), machine).unwrap();
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
+    for dialect in ["haas", "fanuc", "siemens", "heidenhain"] {
+        let words =
+            ["-m", "mine.toml", "part.cls", "-o", "part.nc", "--dialect", dialect, "--verify"];
+        let run = post_in(folder.path(), &words);
+        assert_eq!(run.code, 0, "{dialect}: {}", run.err);
+        let program = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        let cuts =
+            program.lines().filter(|block| block.starts_with("G1 ") || block.starts_with("L "));
+        for cut in cuts.filter(|cut| cut.contains('F')) {
+            assert!(!cut.contains(" B") && !cut.contains(" C"), "{dialect}: {cut}");
+        }
+    }
+}

@@ -32,6 +32,9 @@ const SAME: f64 = 1e-9;
 /// mm a mm: more than the last bits of directions. Measured leans are far larger, and none of them may come in ahead.
 const LEANS: f64 = 1e-9;
 
+/// A plane leans by no more where its three angles and the two rotary axes have three decimals of a degree, mm a mm.
+const ROUNDED_PLANE: f64 = 3e-5;
+
 /// The word of a plane along its normal.
 const DEPTH: usize = 2;
 
@@ -128,9 +131,9 @@ impl BlockStage<'_> {
         };
         let way = placer.solver().chain().way_of(depth, joints);
         if let Some(normal) = self.plane_normal() {
-            // Along it, and not into the part, it is the plane's own Z: the others come first where that is its word.
-            let along =
-                ToolAlignment::of(&normal, &way) == ToolAlignment::Along && way.dot(&normal) > 0.0;
+            // Along it, and not into the part, it is the plane's own Z: the others come first where that is its word. In a
+            // plane that leans they would move the depth too, past its end of travel and ahead of the tool's length.
+            let along = way.cross(&normal).norm() <= ROUNDED_PLANE && way.dot(&normal) > 0.0;
             let word = axis_words::coordinate(machine.axes[depth].word());
             return word != DEPTH || !along;
         }

@@ -450,7 +450,7 @@ impl<'a> BlockStage<'a> {
             let settled = if self.placed.take(lane, &mut node) {
                 Ok(())
             } else {
-                let standing = self.planes.standing(chosen);
+                let standing = self.planes.entered(chosen);
                 placer.settle(&mut node, pose(leg.motion), 1.0, standing)
             };
             match settled {

@@ -57,6 +57,13 @@ impl ActivePlane {
         }
     }
 
+    /// The rotary values of a point behind [`BlockStage::enter_plane`]: upright on its plane, also where it is the first
+    /// one and what the choice held leans.
+    #[inline]
+    pub(super) fn entered<'j>(&'j self, chosen: &'j ChosenPoint) -> &'j Joints {
+        self.stands.as_ref().unwrap_or(&chosen.joints)
+    }
+
     /// Another branch or another full turn of the axes is another plane. A cut goes on in the one that it began in, in which
     /// the tool points as well, wherever the choice would go over to a branch that is near.
     #[inline]

@@ -20,6 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             _ => Notation::Words,
         },
         line_remarks: vec![";".to_owned()],
+        semicolon_ends: false,
         enclosed_remarks: hash.then_some(('(', ')')),
         hash_variables: hash,
         instructions: false,

@@ -108,6 +108,7 @@ mod words;
 mod wrap;
 mod writable;
 mod wrong_programs;
+mod wrong_words;
 
 #[path = "../bench/common/peak.rs"]
 #[cfg(target_os = "linux")]

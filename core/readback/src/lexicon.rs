@@ -432,7 +432,8 @@ fn syntax(words: &[VocabularyWord], language: Language, writes: Capabilities) ->
     let remarks = words.iter().filter(|word| word.meaning == Meaning::Remark);
     let mut line_remarks: Vec<String> = remarks.map(|word| word.word.to_string()).collect();
     // It ends a block of the letters' controls, and begins a remark of all others but robots.
-    if language != Language::Joints && !line_remarks.iter().any(|remark| remark == ";") {
+    let said = line_remarks.iter().any(|remark| remark == ";");
+    if language != Language::Joints && !said {
         line_remarks.push(";".to_owned());
     }
     NcSyntax {
@@ -442,6 +443,7 @@ fn syntax(words: &[VocabularyWord], language: Language, writes: Capabilities) ->
             _ => Notation::Words,
         },
         line_remarks,
+        semicolon_ends: language == Language::Macro && !said,
         enclosed_remarks: first(Meaning::RemarkOpen).zip(first(Meaning::RemarkClose)),
         hash_variables: matches!(language, Language::Macro | Language::Rs274)
             && !writes.has(Capabilities::COMMAND_A_LINE),

@@ -27,6 +27,8 @@ pub struct NcSyntax {
     pub notation: Notation,
     /// What begins a remark that ends with the line: `;`.
     pub line_remarks: Vec<String>,
+    /// `;` ends a block (Fanuc and its like): behind it stands the next one, and prose is taken for a remark.
+    pub semicolon_ends: bool,
     /// What begins and ends a remark within a line: `(` and `)`.
     pub enclosed_remarks: Option<(char, char)>,
     /// Variables are `#1`, `#<name>` (Fanuc, LinuxCNC), not names or `R1` (Siemens).

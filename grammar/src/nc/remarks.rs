@@ -17,6 +17,12 @@ pub(super) fn take_out(
         let at = line.len() - rest.len();
         let length = next.len_utf8();
         if let Some(mark) = begins_line_remark(rest, syntax) {
+            if syntax.semicolon_ends && next == ';' && begins_with_word(&rest[mark..]) {
+                let fault =
+                    Unreadable::new("`;` ends a block, and what stands behind it is the next one");
+                let at = offset + at..offset + at + length;
+                return Err(fault.at(at).help("a line of its own, or a remark in parentheses"));
+            }
             keep(&rest[mark..], remarks);
             blank(code, rest.len());
             return Ok(());
@@ -67,6 +73,18 @@ pub(super) fn take_out(
 fn begins_line_remark(rest: &str, syntax: &NcSyntax) -> Option<usize> {
     let mut marks = syntax.line_remarks.iter();
     marks.find(|mark| !mark.is_empty() && rest.starts_with(mark.as_str())).map(String::len)
+}
+
+/// A letter and its value stand there, or a block that is skipped: `G91`, `X-5.`, `/M8`, `#1=2`.
+fn begins_with_word(text: &str) -> bool {
+    let mut letters = text.trim_start().trim_start_matches('/').chars();
+    match letters.next() {
+        Some('#') => true,
+        Some(letter) if letter.is_ascii_alphabetic() => {
+            matches!(letters.next(), Some('0'..='9' | '+' | '-' | '.' | '#' | '['))
+        }
+        _ => false,
+    }
 }
 
 fn keep(remark: &str, remarks: &mut Vec<String>) {

@@ -121,8 +121,9 @@ const OWN: &[(&str, Meaning)] = &[
     ("G16 H0", Meaning::MachineCoordinates),
     ("G16", Meaning::WorkOffsetBlock),
     ("G53", Meaning::LengthOff),
-    ("G54", Meaning::LengthOn),
-    ("G55", Meaning::LengthOn),
+    // The length along X and Y: not the work offsets of others.
+    ("G54", Meaning::NotFollowed),
+    ("G55", Meaning::NotFollowed),
     ("HA", Meaning::LengthRegister),
     ("HL", Meaning::LengthRegister),
     ("G92", Meaning::SetPosition),

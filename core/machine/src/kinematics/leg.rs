@@ -24,6 +24,10 @@ use crate::axis_formula::{AxisFormula, largest};
 /// Halvings of a way before the bound on a speed is taken as it is.
 const DEEPEST: u32 = 18;
 
+/// Pieces that are looked at for one bound; where they do not suffice the way is halved [`SHALLOW`] times everywhere.
+const MOST_PIECES: u32 = 1 << 14;
+const SHALLOW: u32 = 13;
+
 /// Pieces of the travel of a drive, in each of which it is looked for whether a rod reaches.
 const LOOKS: u32 = 64;
 
@@ -496,7 +500,7 @@ impl Leg {
     }
 
     /// A bound on the speed of the drive along a way, by the share of it, at most 0.2 % too large but where a rod comes to
-    /// stand across its way; no closer than `enough`.
+    /// stand across its way, or the axes bend so that too many pieces of it would be looked at; no closer than `enough`.
     /// `between` gives the axis values at a share, `bends` bounds their second derivatives by it. Infinite where nothing
     /// is proven.
     pub fn fastest(
@@ -506,9 +510,14 @@ impl Leg {
         bends: &Joints,
         enough: f64,
     ) -> f64 {
-        let mut certain = 0.0;
         let piece = WayPiece { from: 0.0, to: 1.0, ends: ends.map(|end| *end) };
-        self.fastest_on(&piece, (between, bends), enough, &mut certain, DEEPEST)
+        let mut search = SpeedSearch { certain: 0.0, left: MOST_PIECES };
+        let bound = self.fastest_on(&piece, (between, bends), enough, &mut search, DEEPEST);
+        if search.left > 0 {
+            return bound;
+        }
+        search.left = u32::MAX;
+        self.fastest_on(&piece, (between, bends), enough, &mut search, SHALLOW)
     }
 
     fn fastest_on(
@@ -516,9 +525,10 @@ impl Leg {
         piece: &WayPiece,
         (between, bends): (&dyn Fn(f64) -> Option<Joints>, &Joints),
         enough: f64,
-        certain: &mut f64,
+        search: &mut SpeedSearch,
         halvings: u32,
     ) -> f64 {
+        search.left = search.left.saturating_sub(1);
         let length = piece.to - piece.from;
         let [first, last] = &piece.ends;
         let bends_here: Joints = std::array::from_fn(|place| bends[place] * length * length);
@@ -536,7 +546,7 @@ impl Leg {
             [Some(first), Some(last)] => libm::fabs(last - first),
             _ => return f64::INFINITY,
         };
-        *certain = certain.max(changes / length);
+        search.certain = search.certain.max(changes / length);
         let ways = std::array::from_fn(|place| last[place] - first[place]);
         let bound = match self.speed_by_rates(region.ends().each_ref(), &ways, &bends_here) {
             Some(speed) => speed / length,
@@ -545,7 +555,7 @@ impl Leg {
                 bounds.first.min(changes + 0.5 * bounds.second) / length
             }
         };
-        if bound <= enough.max(*certain * CLOSE) || halvings == 0 {
+        if bound <= enough.max(search.certain * CLOSE) || halvings == 0 || search.left == 0 {
             return bound;
         }
         let share = 0.5 * (piece.from + piece.to);
@@ -557,15 +567,15 @@ impl Leg {
             WayPiece { from: share, to: piece.to, ends: [middle, *last] },
         ];
         let way = (between, bends);
-        let of = |half: &WayPiece, certain: &mut f64| {
-            self.fastest_on(half, way, enough, certain, halvings - 1)
+        let of = |half: &WayPiece, search: &mut SpeedSearch| {
+            self.fastest_on(half, way, enough, search, halvings - 1)
         };
-        let first = of(&halves[0], certain);
+        let first = of(&halves[0], search);
         // Where nothing is proven of one half the other does not matter.
         if first.is_infinite() {
             return first;
         }
-        first.max(of(&halves[1], certain))
+        first.max(of(&halves[1], search))
     }
 }
 
@@ -584,6 +594,15 @@ fn misses(
         let off = libm::fabs((centre - end(value)).norm() - rod);
         off > radius + 0.5 * step * gain
     })
+}
+
+/// What a search for the largest speed has found.
+#[derive(Clone, Copy, Debug)]
+struct SpeedSearch {
+    /// A speed that the drive certainly has.
+    certain: f64,
+    /// Pieces that may still be looked at.
+    left: u32,
 }
 
 /// A piece of a way between two shares of it, and the axis values there.

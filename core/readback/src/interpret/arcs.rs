@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
-use super::block_words::BlockWords;
+use super::block_words::{BlockWords, bit};
 use super::go::MotionTarget;
 use super::state::ControlState;
 use crate::Curve;
@@ -21,7 +21,10 @@ const OFF: [f64; 2] = [0.02, 0.001];
 const SAME: f64 = 1e-6;
 
 /// Most turns of a helix.
-const MOST_TURNS: f64 = 10_000.0;
+pub(super) const MOST_TURNS: f64 = 10_000.0;
+
+/// Letters of an arc's centre or radius.
+const SHAPE: u32 = bit(b'I') | bit(b'J') | bit(b'K') | bit(b'R');
 
 impl ControlState {
     /// The arc that the words of a block ask for.
@@ -32,6 +35,7 @@ impl ControlState {
         target: &mut MotionTarget,
     ) -> Result<Curve, Box<Diagnostic>> {
         let [first, second, third] = self.modal.plane.coordinates();
+        self.least_increments(words, SHAPE)?;
         let from = self.point();
         let to = Vector3::from_fn(|row, _| target.point[row].unwrap_or(from[row]));
         // The rest of the words counts from one point, also where the end says nothing.
@@ -57,7 +61,7 @@ impl ControlState {
                 return Err(self.refuse("nc-arc", message));
             }
             told = true;
-            let own = words.absolute & super::block_words::bit(letter) != 0;
+            let own = words.absolute & bit(letter) != 0;
             centre[row] = if absolute || own { value * unit } else { from[row] + value * unit };
         }
         let flat = |point: Vector3<f64>| [point[first], point[second]];

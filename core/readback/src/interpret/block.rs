@@ -673,7 +673,7 @@ impl ControlState {
         let unit = self.modal.unit;
         let point = if left & incremental != 0 { self.point() } else { Default::default() };
         if left & words.pointless != 0 {
-            self.least_increments(words)?;
+            self.least_increments(words, self.axes.mask)?;
         }
         while left != 0 {
             let letter = left.trailing_zeros() as usize % 26;

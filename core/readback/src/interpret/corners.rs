@@ -84,8 +84,12 @@ impl ControlState {
         // There P0 is no tolerance.
         let tolerance = tolerance.filter(|tolerance| !blends || *tolerance > 0.0);
         let off_path = match tolerance {
-            // As far as it takes to keep the speed.
-            None if blends => Some(f64::INFINITY),
+            // As far as it takes to keep the speed; by parameters of the control (Fagor's G5 and G50).
+            None if blends
+                || self.lexicon.language() == Language::Instructions && code.is_some() =>
+            {
+                Some(f64::INFINITY)
+            }
             said => said.map(|said| said.max(merged.filter(|_| blends).unwrap_or(0.0))),
         };
         self.smooth(off_path, 0.0);

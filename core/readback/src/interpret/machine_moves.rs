@@ -297,9 +297,13 @@ impl ControlState {
 
     /// Numbers without a point: some controls count them in their least increment.
     #[cold]
-    pub(super) fn least_increments(&mut self, words: &BlockWords) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn least_increments(
+        &mut self,
+        words: &BlockWords,
+        letters: u32,
+    ) -> Result<(), Box<Diagnostic>> {
         if self.lexicon.language() == Language::Macro
-            && words.present & self.axes.mask & words.pointless != 0
+            && words.present & letters & words.pointless != 0
         {
             let message = "axis words without a decimal point are taken in the units of the program: by a parameter of the control they may be its least increments";
             self.note(Diagnostic::warning("nc-number", message));

@@ -24,6 +24,8 @@ pub(super) struct ToolState {
     pub by_tool: bool,
     /// What is added to the length of the table: DL, mm.
     pub longer: f64,
+    /// What is added to the radius of the table and to that of its corner, program units: DR, DR2.
+    pub thicker: [f64; 2],
     /// The length that a block has named: G43.1, mm.
     pub stated: Option<f64>,
     /// The plane across the tool as the length came on: a control with edges, or with a tool call that names the axis,

@@ -10,7 +10,7 @@
 use super::hole::goes_down;
 use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
 use super::report::{BlockPlace, lines_of};
-use super::track::{ElementKind, MOST_AT_ONCE};
+use super::track::{ElementKind, MOST_AT_ONCE, MOST_HELD};
 use super::{COMPUTED, Verifier, state};
 use crate::course::Course;
 use crate::{Motion, MotionKind};
@@ -209,7 +209,7 @@ impl<C: Course> Verifier<'_, C> {
     /// Nobody can say any more where on the course the program stands: nothing of it is looked at further.
     fn lose_the_place(&mut self, motion: &Motion) {
         let message = format!(
-            "verify has lost the program's place: more than {MOST_AT_ONCE} pieces of the CL path lie within the tolerance of one point"
+            "verify has lost the program's place: more than {MOST_AT_ONCE} pieces of the CL path lie within the tolerance of one point, or more than {MOST_HELD} pairs of a piece of it and one of this motion"
         );
         let cl_line = self.stands_at();
         self.fault("lost", message, Some(motion), Some(cl_line), None);
@@ -303,11 +303,14 @@ impl<C: Course> Verifier<'_, C> {
         let mut worst = PlaceDistance::default();
         let mut asked = 0;
         let mut swept = SweepOutcome::Through;
+        // Pieces of the program held against elements.
+        let mut held = 0;
         for ends in places.windows(2) {
             spare.clear();
             let column = self.column(&ends[0], &ends[1], bound, &reach, &mut spare);
             std::mem::swap(&mut reach, &mut spare);
-            if column.cut_short && self.stray.is_none() && measured {
+            held += column.held;
+            if held > MOST_HELD || column.cut_short && self.stray.is_none() && measured {
                 swept = SweepOutcome::Lost;
                 break;
             }
@@ -350,8 +353,6 @@ impl<C: Course> Verifier<'_, C> {
         let (mut line, mut off) = (0, f64::INFINITY);
         // What can be reached of the program's piece at the beginning of the element.
         let mut below = ShareSpan::EMPTY;
-        // What it was held against already.
-        let mut met = 0;
         let mut index = 0;
         while index < reach.len() || !below.is_empty() {
             let left = reach.get(index).copied().unwrap_or(ShareSpan::EMPTY);
@@ -360,11 +361,11 @@ impl<C: Course> Verifier<'_, C> {
                 index += 1;
                 continue;
             }
-            if met == MOST_AT_ONCE {
+            if column.held == MOST_AT_ONCE {
                 column.cut_short = true;
                 break;
             }
-            met += 1;
+            column.held += 1;
             let Some(element) = self.track.get(index) else {
                 break;
             };
@@ -628,6 +629,8 @@ struct PieceOutcome {
     here: Option<(PlaceDistance, u64)>,
     /// An element that no cut passes.
     stopped: Option<usize>,
+    /// How many elements it was held against.
+    held: usize,
     /// There were more elements to hold it against than are.
     cut_short: bool,
 }

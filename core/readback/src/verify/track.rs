@@ -115,6 +115,9 @@ pub(super) const MOST: usize = 60_000;
 /// A program that may stand on more elements at a time is lost: each of its motions would be held against all of them.
 pub(super) const MOST_AT_ONCE: usize = 10_000;
 
+/// Pieces of one motion are held against so many elements in all: one that turns hundreds of times near many of them is lost.
+pub(super) const MOST_HELD: usize = 10_000_000;
+
 /// Commands of the spindle that are kept of a tool.
 pub(super) const MOST_SPEEDS: usize = 64;
 

@@ -15,6 +15,7 @@ fn hash() -> NcSyntax {
     NcSyntax {
         notation: Notation::Words,
         line_remarks: vec![";".to_owned()],
+        semicolon_ends: false,
         enclosed_remarks: Some(('(', ')')),
         hash_variables: true,
         instructions: false,

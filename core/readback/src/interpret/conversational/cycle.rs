@@ -28,6 +28,17 @@ pub(super) fn define(
         // The head of one whose values stand in lines of their own.
         (7..=11 | 13 | 19 | 26 | 32, 0) => Ok(()),
         (7, _) => {
+            // `7.1 #5`: a row of a table in the control.
+            let axes = said.block.items.iter().skip(2);
+            if let Some(other) = axes.clone().find(|item| !matches!(item, NcItem::Word(_))) {
+                let message =
+                    format!("CYCL DEF 7 by {}: a table of the control, or no shift", told(other));
+                return Err(control.refuse("nc-frame", message));
+            }
+            if words.present & control.axes.mask == 0 {
+                let message = "CYCL DEF 7 without an axis: a table of the control, or no shift";
+                return Err(control.refuse("nc-frame", message));
+            }
             let by = shifts(control, words)?;
             shift(control, by)
         }
@@ -86,6 +97,16 @@ pub(super) fn define(
             format!("CYCL DEF {cycle} is not run: what it moves or changes is not known here"),
         )),
         _ => remember(control, cycle, said),
+    }
+}
+
+/// What an item of a block is called.
+fn told(item: &NcItem) -> String {
+    match item {
+        NcItem::Name(name) | NcItem::Named { name, .. } => name.to_string(),
+        NcItem::Number(number) => number.value.to_string(),
+        NcItem::Text(text) => text.clone(),
+        _ => "something that is no word of an axis".to_owned(),
     }
 }
 

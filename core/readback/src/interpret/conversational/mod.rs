@@ -50,8 +50,15 @@ pub(super) fn run(
     // Words of axes are positions, or ways by a letter of their own; L and its like name the motion.
     control.modal.motion = MotionMode::Linear;
     let said = BlockNames { block };
-    let Some(NcItem::Name(first)) = block.items.first() else {
-        return path::alone(control, &said, words);
+    if let Some(code) = words.g.list().first() {
+        let message = format!("G{code} in a program of the dialogue: it is no word there");
+        return Err(control.refuse("nc-conversational", message));
+    }
+    let first = match block.items.first() {
+        Some(NcItem::Name(first)) => first,
+        // `CHF 2`, `RND 2`, `FOO 5`: what the block is called, and its value.
+        Some(NcItem::Named { name, .. }) => return Err(not_run(control, name)),
+        _ => return path::alone(control, &said, words),
     };
     match &**first {
         "L" => path::line(control, &said, words),
@@ -71,7 +78,7 @@ pub(super) fn run(
             control.set_tcp(false, None, false);
             Ok(())
         }
-        "FUNCTION MODE" => Ok(()),
+        "FUNCTION MODE" => said.only(control, &["MILL"], &[]),
         "BEGIN PGM" => begin(control, &said),
         "END PGM" => {
             control.end();
@@ -84,11 +91,13 @@ pub(super) fn run(
         }
         // Words of modes alone: `R0 FMAX`, `FMAX M3`.
         "R0" | "RL" | "RR" | "FMAX" => path::alone(control, &said, words),
-        other => Err(control.refuse(
-            "nc-conversational",
-            format!("`{other}` is not run: what the machine does then is not followed"),
-        )),
+        other => Err(not_run(control, other)),
     }
+}
+
+fn not_run(control: &ControlState, name: &str) -> Box<Diagnostic> {
+    let message = format!("`{name}` is not run: what the machine does then is not followed");
+    control.refuse("nc-conversational", message)
 }
 
 /// mm/min in a unit of F: in a program in inches it counts tenths of an inch a minute.
@@ -218,6 +227,11 @@ fn functions(
                     format!("M{code} is not run: it changes where the machine goes"),
                 ));
             }
+            // A share of the feed on the way down.
+            103 if words.get(b'F').is_some() => {
+                let message = "M103 F is not run: it changes the feed of each way down";
+                return Err(control.refuse("nc-feed", message));
+            }
             // The last of those that M89 calls.
             99 => {
                 control.cycles.at_each = false;
@@ -275,6 +289,16 @@ fn afterwards(
     Ok(())
 }
 
+/// A tool whose radius is not that of its table moves what is compensated.
+fn not_thicker(control: &ControlState) -> Answer<()> {
+    if control.tools.thicker == [0.0; 2] {
+        return Ok(());
+    }
+    let message =
+        "DR or DR2 of the tool call moves what is compensated by the radius, and is not followed";
+    Err(control.refuse("nc-tool", message))
+}
+
 /// Feed, and whether the block goes at rapid; radius compensation.
 fn modes(
     control: &mut ControlState,
@@ -291,8 +315,10 @@ fn modes(
                 );
             }
             "R0" => control.compensate(0, words)?,
-            "RL" => control.compensate(-1, words)?,
-            "RR" => control.compensate(1, words)?,
+            "RL" | "RR" => {
+                not_thicker(control)?;
+                control.compensate(if name == "RL" { -1 } else { 1 }, words)?;
+            }
             _ => {}
         }
     }

@@ -1,8 +1,11 @@
 //! Path functions: straight lines, arcs about a pole, by radius, tangential; polar coordinates.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector3;
 
-use super::{Answer, BlockNames, afterwards, functions, modes, plane};
+use super::{Answer, BlockNames, afterwards, functions, modes, not_thicker, plane};
+use crate::interpret::arcs::MOST_TURNS;
 use crate::interpret::block::BlockRequest;
 use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::cycles;
@@ -52,6 +55,10 @@ pub(super) fn line_with_normal(
 ) -> Answer<()> {
     said.no_number(control)?;
     said.only(control, NAMES, &["NX", "NY", "NZ", "TX", "TY", "TZ"])?;
+    // The surface's normal: along it the control moves the tool by what it is thicker.
+    if said.named(control, "NX")?.is_some() {
+        not_thicker(control)?;
+    }
     let mut vector = Vector3::zeros();
     let mut any = false;
     for (row, name) in ["TX", "TY", "TZ"].into_iter().enumerate() {
@@ -302,6 +309,10 @@ impl PolarEnd {
         if let Some(by) = self.by {
             if by != 0.0 && (by < 0.0) != clockwise {
                 return Err(control.refuse("nc-arc", "CP turns the other way than DR says"));
+            }
+            if libm::fabs(by) > (MOST_TURNS + 1.0) * TAU {
+                let message = format!("CP by {} turns", libm::fabs(by) / TAU);
+                return Err(control.refuse("nc-arc", message));
             }
             return Ok(Curve::Arc { centre: self.centre, normal: Vector3::z(), sweep: by });
         }

@@ -23,7 +23,7 @@ pub(super) fn call(
     if let Some(feed) = words.take(b'F') {
         control.modal.feed = Some(feed * feed_unit(control));
     }
-    let longer = said.named(control, "DL")?.unwrap_or(0.0) * control.modal.unit;
+    let longer = said.named(control, "DL")?.map(|longer| longer * control.modal.unit);
     let number = said.number().map(|number| number.value);
     let name = said.text().map(str::to_owned);
     let number = match number {
@@ -35,7 +35,16 @@ pub(super) fn call(
             return Err(control.refuse("nc-tool", format!("{number} is no number of a tool")));
         }
     };
+    let thicker = match (said.named(control, "DR")?, said.named(control, "DR2")?) {
+        (None, None) => None,
+        (radius, corner) => Some([radius, corner].map(|more| more.unwrap_or(0.0))),
+    };
     if number.is_none() && name.is_none() {
+        control.tools.thicker = thicker.unwrap_or(control.tools.thicker);
+        if let Some(longer) = longer {
+            control.tools.longer = longer;
+            control.length_changed()?;
+        }
         return control.left_over(words);
     }
     if control.state.tcp || control.frames.plane.is_some() {
@@ -47,7 +56,8 @@ pub(super) fn call(
     control.change_tool(number, name)?;
     control.tools.by_tool = true;
     control.tools.length_on = true;
-    control.tools.longer = longer;
+    control.tools.longer = longer.unwrap_or(0.0);
+    control.tools.thicker = thicker.unwrap_or_default();
     control.tools.across = across;
     if let Some(lack) = control.lies_off(across, Some("TOOL CALL")) {
         return Err(control.refuse("nc-tool", lack));

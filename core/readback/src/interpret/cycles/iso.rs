@@ -218,6 +218,7 @@ fn levels_said(
     let axis = control.modal.plane.coordinates()[2];
     let letter = [b'X', b'Y', b'Z'][axis];
     let code = code.unwrap_or_default();
+    control.least_increments(words, bit(letter) | bit(b'R'))?;
     let mut running = begun(control, code, meaning, axis)?;
     let incremental = control.modal.incremental;
     let refused = words.incremental & (bit(letter) | bit(b'R'));

@@ -154,6 +154,10 @@ pub(super) fn defined(control: &mut ControlState) -> Result<(), Box<Diagnostic>>
     let Some(DefinedCycle { cycle, values }) = control.cycles.defined.clone() else {
         return Err(control.refuse("nc-cycle", "a cycle is called, and none is defined"));
     };
+    if control.modal.feed_mode == FeedMeaning::PerRevolution {
+        let message = "a cycle under M136: how fast it drills is not known";
+        return Err(control.refuse("nc-cycle", message));
+    }
     let parameters = conversational::Parameters {
         cycle,
         values: &values,

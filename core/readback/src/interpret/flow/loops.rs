@@ -26,6 +26,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
                 }
                 self.forget(head);
                 if variables.holds(&condition)? {
+                    self.ends_later(name.as_deref(), Some(LoopKind::While))?;
                     self.push(OpenConstruct::While { name, head })?;
                 } else {
                     self.skip_loop(name.as_deref(), LoopKind::While)?;
@@ -39,17 +40,20 @@ impl<R: Read + Seek> ProgramFlow<R> {
                 if from > to {
                     self.skip_loop(None, LoopKind::For)?;
                 } else {
+                    self.ends_later(None, Some(LoopKind::For))?;
                     let body = self.reader.mark();
                     self.push(OpenConstruct::For { head, body, variable: name, to })?;
                 }
             }
             NcFlow::Loop => {
                 self.forget(head);
+                self.ends_later(None, Some(LoopKind::Loop))?;
                 let body = self.reader.mark();
                 self.push(OpenConstruct::Loop { head, body })?;
             }
             NcFlow::Do(name) => {
                 self.forget(head);
+                self.ends_later(name.as_deref(), Some(LoopKind::Do))?;
                 let body = self.reader.mark();
                 self.push(OpenConstruct::Do { name, head, body })?;
             }
@@ -57,6 +61,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
                 self.forget(head);
                 let left = whole(variables.number(&times)?, "a count of repeats")?;
                 if left > 0 {
+                    self.ends_later(name.as_deref(), Some(LoopKind::Times))?;
                     let body = self.reader.mark();
                     self.push(OpenConstruct::Times { name, head, body, left })?;
                 } else {
@@ -222,12 +227,39 @@ impl<R: Read + Seek> ProgramFlow<R> {
         Ok(())
     }
 
-    /// A condition does not hold: on to what does, or after the end.
+    /// What begins in the block in hand, a loop of that kind or a branch, ends further down: a control that meets the end
+    /// of the program within it stops there. Looked for once, and read again afterwards.
+    pub(super) fn ends_later(
+        &mut self,
+        name: Option<&str>,
+        kind: Option<LoopKind>,
+    ) -> FlowResult<()> {
+        let line = self.here.line();
+        if line <= self.closed {
+            return Ok(());
+        }
+        self.closed = line;
+        let body = self.reader.mark();
+        match kind {
+            Some(kind) => self.skip_loop(name, kind)?,
+            None => {
+                self.skip(
+                    name,
+                    |flow| matches!(flow, NcFlow::If { .. }),
+                    |flow| matches!(flow, NcFlow::EndIf(_)),
+                    |flow| matches!(flow, NcFlow::EndIf(_)),
+                )?;
+            }
+        }
+        self.go_to(body)
+    }
+
+    /// A condition does not hold: on to what does, or after the end; true where a branch begins.
     pub(super) fn otherwise(
         &mut self,
         name: Option<&str>,
         variables: &Variables,
-    ) -> FlowResult<()> {
+    ) -> FlowResult<bool> {
         loop {
             let flow = self.skip(
                 name,
@@ -237,7 +269,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
             )?;
             match flow {
                 NcFlow::ElseIf { condition, .. } if !variables.holds(&condition)? => {}
-                _ => return Ok(()),
+                flow => return Ok(!matches!(flow, NcFlow::EndIf(_))),
             }
         }
     }

@@ -80,6 +80,14 @@ pub(super) struct ProgramFlow<R> {
     /// Where the block stands that was handed out last.
     here: NcMark,
     running: Vec<OpenConstruct>,
+    /// Branches whose end is still to come.
+    branches: u32,
+    /// Something led to where no end of a branch need have its beginning.
+    jumped: bool,
+    /// Line up to which each loop and branch that begins was seen to end.
+    closed: u64,
+    /// A block was handed out.
+    begun: bool,
     /// What the block that was handed out last leads to, once it is run.
     pending: Option<BlockTransfer>,
     /// What that block sets, once it is run.
@@ -102,6 +110,10 @@ impl<R: Read + Seek> ProgramFlow<R> {
             over: false,
             here,
             running: Vec::new(),
+            branches: 0,
+            jumped: false,
+            closed: 0,
+            begun: false,
             pending: None,
             set: Vec::new(),
             passed: NcBlock::default(),
@@ -148,10 +160,8 @@ impl<R: Read + Seek> ProgramFlow<R> {
             if !self.take(block)? || is_tape_end(block) {
                 return self.ended();
             }
-            if !calls::leads(block, self.language, variables) {
-                return Ok(true);
-            }
-            if self.follow(block, variables)? {
+            if !calls::leads(block, self.language, variables) || self.follow(block, variables)? {
+                self.begun |= !block.items.is_empty();
                 return Ok(true);
             }
         }
@@ -246,6 +256,14 @@ impl<R: Read + Seek> ProgramFlow<R> {
             }
             _ => true,
         });
+        // `IF [..] THEN` with nothing behind it holds up to its `ENDIF`.
+        if let [NcFlow::Then(condition)] = flows.as_slice()
+            && block.items.is_empty()
+            && set.is_empty()
+            && self.pending.is_none()
+        {
+            flows = vec![NcFlow::If { name: None, condition: condition.clone() }];
+        }
         // A condition in front of them decides whether they are set.
         let (conditions, flows): (Vec<_>, Vec<_>) =
             flows.into_iter().partition(|flow| matches!(flow, NcFlow::Then(_)));
@@ -303,9 +321,14 @@ impl<R: Read + Seek> ProgramFlow<R> {
             }
             NcFlow::Then(condition) => variables.holds(&condition),
             NcFlow::If { name, condition } => {
-                if !variables.holds(&condition)? {
-                    self.otherwise(name.as_deref(), variables)?;
-                }
+                let begins = match variables.holds(&condition)? {
+                    true => {
+                        self.ends_later(name.as_deref(), None)?;
+                        true
+                    }
+                    false => self.otherwise(name.as_deref(), variables)?,
+                };
+                self.branches += u32::from(begins);
                 Ok(true)
             }
             NcFlow::ElseIf { name, .. } | NcFlow::Else(name) => {
@@ -315,9 +338,16 @@ impl<R: Read + Seek> ProgramFlow<R> {
                     |flow| matches!(flow, NcFlow::EndIf(_)),
                     |flow| matches!(flow, NcFlow::EndIf(_)),
                 )?;
+                self.branches = self.branches.saturating_sub(1);
                 Ok(false)
             }
-            NcFlow::EndIf(_) => Ok(true),
+            NcFlow::EndIf(_) => match self.branches.checked_sub(1) {
+                None if !self.jumped => Err(fault("a branch ends here, and none has begun")),
+                left => {
+                    self.branches = left.unwrap_or(0);
+                    Ok(true)
+                }
+            },
             NcFlow::SubBegin(name) => {
                 if self.language == Language::Rs274 {
                     self.skip(
@@ -360,6 +390,14 @@ impl<R: Read + Seek> ProgramFlow<R> {
             && until == name
         {
             self.pending = Some(BlockTransfer::PartEnd);
+        }
+        // `O2000`: a program of its own, which something calls, or the one in front of it has no end.
+        let names_program = self.language == Language::Macro
+            && name.strip_prefix('O').is_some_and(|number| number.parse::<u64>().is_ok());
+        if names_program && self.begun && !self.called() {
+            return Err(fault(&format!(
+                "{name} begins another program here, and the one in front of it has no end"
+            )));
         }
         Ok(true)
     }
@@ -513,6 +551,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         if times < 1 {
             return Ok(());
         }
+        self.jumped = true;
         let back = self.reader.mark();
         let start = self.find(&NcTarget::Label(label.clone()), JumpDirection::Anywhere)?;
         let start = start.ok_or_else(|| no_target(&label))?;
@@ -537,6 +576,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
 
     fn jump(&mut self, wanted: &NcTarget, direction: JumpDirection) -> FlowResult<()> {
         let found = self.find(wanted, direction)?;
+        self.jumped = true;
         let found = found.ok_or_else(|| match wanted {
             NcTarget::Label(name) | NcTarget::Subprogram(name) | NcTarget::Program(name) => {
                 no_target(name)

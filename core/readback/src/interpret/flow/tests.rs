@@ -16,6 +16,7 @@ fn run_with(language: Language, program: &str, limits: Limits) -> (Vec<f64>, Opt
             _ => Notation::Words,
         },
         line_remarks: vec![";".to_owned()],
+        semicolon_ends: false,
         enclosed_remarks: (!names && language != Language::Conversational).then_some(('(', ')')),
         hash_variables: matches!(language, Language::Macro | Language::Rs274),
         instructions: language == Language::Instructions,

@@ -1,0 +1,158 @@
+//! Words that an operator puts into a program, or leaves in it: what `post verify` cannot follow it refuses, each in the
+//! language of its control.
+
+use std::fs;
+
+use tempfile::TempDir;
+
+use crate::common::{Run, post_in};
+
+const PART: &str = "UNITS/MM\nLOADTL/1\nSPINDL/3000,CLW\nRAPID\nGOTO/-40,-30,50\nRAPID\nGOTO/-40,-30,2\nFEDRAT/300,MMPM\n\
+    GOTO/-40,-30,-3\nFEDRAT/900,MMPM\nGOTO/40,-30,-3\nGOTO/40,30,-3\nRAPID\nGOTO/40,30,50\n\
+    CYCLE/DRILL,FEDTO,-12,MMPM,200,RAPTO,2\nGOTO/10,0,0\nGOTO/-10,0,0\nCYCLE/OFF\nRAPID\nGOTO/-10,0,50\nFINI\n";
+
+/// Where a line is put in.
+#[derive(Clone, Copy, Debug)]
+enum Ahead {
+    /// Of the first block that names X.
+    Approach,
+    /// Of the cut's last way.
+    Corner,
+    /// Of the definition of the cycle, or its first block.
+    Cycle,
+}
+
+impl Ahead {
+    fn is_it(self, block: &str) -> bool {
+        let has = |words: [&str; 2]| words.iter().any(|word| block.contains(word));
+        match self {
+            Self::Approach => has(["X-40.000", "X=-40"]),
+            Self::Corner => has([" Y+30.000", "Y30.000"]),
+            Self::Cycle => has(["CYCL DEF 200", "G81"]),
+        }
+    }
+}
+
+/// The part posted in a dialect on a mill, judged with `lines` put in.
+fn judged(machine: &str, dialect: &str, ahead: Ahead, lines: &str) -> Run {
+    let folder: TempDir = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.cls"), PART).unwrap();
+    let own = ["-m", machine, "--tool-length", "100", "--dialect", dialect];
+    let run = post_in(folder.path(), &[&own[..], &["part.cls", "-o", "part.nc"]].concat());
+    assert_eq!(run.code, 0, "{dialect}: {}", run.err);
+    let right = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    let (mut wrong, mut put) = (String::new(), false);
+    for block in right.lines() {
+        if !put && ahead.is_it(block) {
+            wrong.push_str(lines);
+            put = true;
+        }
+        wrong.push_str(block);
+        wrong.push('\n');
+    }
+    assert!(put, "{dialect}: {right}");
+    fs::write(folder.path().join("part.nc"), wrong).unwrap();
+    let verify = [&["verify", "part.nc", "--against", "part.cls", "--posted"][..], &own].concat();
+    post_in(folder.path(), &verify)
+}
+
+#[test]
+fn what_is_not_followed_is_refused() {
+    use Ahead::{Approach, Corner, Cycle};
+    for (machine, dialect, ahead, lines, said) in [
+        (
+            "vmc",
+            "heidenhain",
+            Corner,
+            "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #1\n",
+            "CYCL DEF 7 by",
+        ),
+        (
+            "vmc",
+            "heidenhain",
+            Corner,
+            "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1\n",
+            "error[nc-frame]",
+        ),
+        ("vmc", "heidenhain", Approach, "TOOL CALL DL-5\n", "error[length]"),
+        ("vmc", "heidenhain", Approach, "TOOL CALL S3000 DL+1\n", "error[length]"),
+        ("vmc", "heidenhain", Corner, "CHF 2\n", "`CHF` is not run"),
+        ("vmc", "heidenhain", Corner, "RND 2\n", "`RND` is not run"),
+        ("vmc", "heidenhain", Corner, "FOO 5\n", "`FOO` is not run"),
+        ("vmc", "heidenhain", Corner, "G91\n", "G91 in a program of the dialogue"),
+        ("vmc", "heidenhain", Cycle, "M136\n", "under M136"),
+        ("vmc", "heidenhain", Corner, "M103 F20\n", "M103 F is not run"),
+        ("vmc", "heidenhain", Approach, "FUNCTION MODE TURN\n", "`TURN` is not known"),
+        ("vmc", "heidenhain", Corner, "CC X+40 Y-20\nCP IPA+36000000 DR+\n", "CP by 100000 turns"),
+        (
+            "vmc",
+            "fanuc",
+            Corner,
+            "IF [1 EQ 0] THEN\nG0 Z50.\nG1\n",
+            "what begins here does not end",
+        ),
+        ("vmc", "fanuc", Corner, "ENDIF\n", "a branch ends here, and none has begun"),
+        ("vmc", "fanuc", Corner, "O2000\n", "O2000 begins another program here"),
+        ("vmc", "haas", Corner, "G90;G91\n", "`;` ends a block"),
+        ("vmc", "siemens", Corner, "FOR R1=1 TO 3\n", "what begins here does not end"),
+        ("vmc", "siemens", Corner, "LOOP\n", "what begins here does not end"),
+        ("vmc", "siemens", Corner, "IF TRUE\n", "what begins here does not end"),
+        ("osp-mill", "okuma", Corner, "G55 H1\n", "G55"),
+        ("osp-mill", "okuma", Corner, "G54 H1\n", "G54"),
+    ] {
+        let run = judged(machine, dialect, ahead, lines);
+        assert_eq!(run.code, 1, "{dialect} {lines}: {}{}", run.out, run.err);
+        assert!(run.err.contains(said), "{dialect} {lines}: {}", run.err);
+    }
+}
+
+/// A cut in a branch that does not hold is not cut, whatever stands between its words.
+#[test]
+fn a_branch_that_does_not_hold_is_left_out() {
+    for dialect in ["fanuc", "mitsubishi"] {
+        // The corner's block comes behind the end of the branch, and is cut; before it, what is put in is not.
+        let empty = "IF [1 EQ 0] THEN\nG1 Z-20. F5.\nENDIF\n";
+        let run = judged("vmc", dialect, Ahead::Corner, empty);
+        assert_eq!(run.code, 0, "{dialect}: {}", run.err);
+        let other = "IF [1 EQ 0] THEN\nG1 Z-20.\nELSE\nG1 X41.\nENDIF\n";
+        let run = judged("vmc", dialect, Ahead::Corner, other);
+        assert!(run.err.contains("error[deviation]"), "{dialect}: {}", run.err);
+    }
+}
+
+#[test]
+fn what_is_right_stays_so() {
+    use Ahead::{Approach, Corner};
+    for (machine, dialect, ahead, lines) in [
+        (
+            "vmc",
+            "heidenhain",
+            Approach,
+            "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+0\nCYCL DEF 7.2 Y+0\n",
+        ),
+        ("vmc", "heidenhain", Approach, "TOOL CALL S3000\n"),
+        ("vmc", "heidenhain", Approach, "FUNCTION MODE MILL\n"),
+        ("vmc", "fanuc", Corner, "; the corner\n"),
+        ("vmc", "fanuc", Corner, "(CORNER);\n"),
+        ("vmc", "siemens", Corner, "IF TRUE\nENDIF\nFOR R1=1 TO 3\nENDFOR\n"),
+    ] {
+        let run = judged(machine, dialect, ahead, lines);
+        assert_eq!(run.code, 0, "{dialect} {lines}: {}", run.err);
+    }
+}
+
+/// Numbers of levels and centres without a point, which a parameter of the control makes thousandths.
+#[test]
+fn levels_without_a_point_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    for block in
+        ["G81 X10. Y0. Z-12 R2. F200.", "G81 X10. Y0. Z-12. R2 F200.", "G2 X10. Y0. I-10 J0. F200."]
+    {
+        let program = format!(
+            "%\nO1\nG21 G17 G40 G80 G90 G94\nT1 M6\nS3000 M3\nG54\nG0 X10. Y0.\nG43 H1 Z5.\n{block}\nG80\nG53 G0 Z20.\nM30\n%\n"
+        );
+        fs::write(folder.path().join("part.nc"), program).unwrap();
+        let run = post_in(folder.path(), &["read", "part.nc", "-m", "vmc", "--tool-length", "100"]);
+        assert!(run.err.contains("warning[nc-number]"), "{block}: {}", run.err);
+    }
+}

@@ -156,3 +156,15 @@ fn levels_without_a_point_are_warned_of() {
         assert!(run.err.contains("warning[nc-number]"), "{block}: {}", run.err);
     }
 }
+
+/// Three hundred thousand circles beside the path: minutes, and the same answer as for twenty thousand.
+#[test]
+fn a_loop_beside_the_path_is_given_up() {
+    let loops = "#1=0\nWHILE [#1 LT 300000] DO1\n#1=#1+1\nG3 I-10. J0\nEND1\n";
+    let run = judged("vmc", "fanuc", Ahead::Corner, loops);
+    assert!(
+        run.err.contains("error[lost]: verify has lost the program's place: 20000"),
+        "{}",
+        run.err
+    );
+}

@@ -555,13 +555,13 @@ pub(crate) fn stuck(
             diagnostic.message = format!("on the way to this point: {}", diagnostic.message);
             diagnostic
         }
-        LineariseError::Rounding { tip, axis } => Diagnostic::error(
+        LineariseError::Rounding { tip, axis, allowed } => Diagnostic::error(
             "rounding",
             format!(
                 "the decimals of the dialect alone move the tip by {tip:.6} mm and the tool axis by {:.6}°; allowed are {:.6} mm and {:.6}°",
                 axis.to_degrees(),
-                machine.accuracy.tolerance - motion.chord,
-                machine.accuracy.axis_tolerance.to_degrees()
+                finite(allowed.tip, machine.accuracy.tolerance - motion.chord),
+                finite(allowed.axis, machine.accuracy.axis_tolerance).to_degrees()
             ),
         )
         .help("more decimals in [control] or a wider tolerance in [accuracy]"),
@@ -587,6 +587,11 @@ pub(crate) fn stuck(
             format!("the error model {} cannot answer: {message}", machine.accuracy.model),
         ),
     }
+}
+
+/// What is allowed, or what the machine file says where nothing is held.
+fn finite(allowed: f64, said: f64) -> f64 {
+    if allowed.is_finite() { allowed } else { said }
 }
 
 /// An end of the travel is no farther than a degree.

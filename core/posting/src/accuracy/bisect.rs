@@ -132,7 +132,7 @@ fn stuck(piece: &NodeMove<'_>) -> Option<LineariseError> {
     let tip = from.tip_error.max(to.tip_error);
     let axis = from.axis_error.max(to.axis_error);
     if tip >= piece.tolerances.tip || axis >= piece.tolerances.axis {
-        return Some(LineariseError::Rounding { tip, axis });
+        return Some(LineariseError::Rounding { tip, axis, allowed: piece.tolerances });
     }
     if to.t - from.t > SHORTEST {
         return None;

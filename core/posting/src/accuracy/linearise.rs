@@ -7,7 +7,7 @@ use post_plugin::{Curve, ModelSession};
 
 use super::bound::DeviationBound;
 use super::certificate::DerivativeBound;
-use super::deviation::NodeMove;
+use super::deviation::{MoveTolerances, NodeMove};
 use super::node::{PathNode, PlacementError};
 use super::run::NodeRun;
 use post_machine::description::{AccuracyRules, Method, Placement};
@@ -34,6 +34,8 @@ pub enum LineariseError {
         tip: f64,
         /// Error of the tool axis, radians.
         axis: f64,
+        /// What the move must keep, which a plan or an error model may have made less.
+        allowed: MoveTolerances,
     },
     /// The axes jump: pieces of a millionth of the move are still over.
     Jump {

@@ -215,6 +215,8 @@ pub struct Verifier<'m, C> {
     /// The tool has moved at rapid since the last cut, or not cut yet.
     apart: bool,
     stray: Option<StrayStretch>,
+    /// How often a motion went farther off than the stretch before it.
+    widened: u32,
     hole: Option<HoleRun>,
     made: Option<DrilledHole>,
     /// The cycle of the program that is on.
@@ -290,6 +292,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             next: Some(0),
             apart: true,
             stray: None,
+            widened: 0,
             hole: None,
             made: None,
             cycle: None,

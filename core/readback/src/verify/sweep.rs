@@ -10,7 +10,7 @@
 use super::hole::goes_down;
 use super::place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace, free, nearest};
 use super::report::{BlockPlace, lines_of};
-use super::track::{ElementKind, MOST_AT_ONCE, MOST_HELD};
+use super::track::{ElementKind, MOST_AT_ONCE, MOST_HELD, MOST_WIDENED};
 use super::{COMPUTED, Verifier, state};
 use crate::course::Course;
 use crate::{Motion, MotionKind};
@@ -180,7 +180,10 @@ impl<C: Course> Verifier<'_, C> {
                 }
                 SweepOutcome::Nowhere => go_back(&mut self.reach),
                 SweepOutcome::Lost => {
-                    self.lose_the_place(motion);
+                    self.lose_the_place(
+                        motion,
+                        &format!("more than {MOST_AT_ONCE} pieces of the CL path lie within the tolerance of one point, or more than {MOST_HELD} pairs of a piece of it and one of this motion"),
+                    );
                     return false;
                 }
             }
@@ -189,6 +192,14 @@ impl<C: Course> Verifier<'_, C> {
                 self.leave_cut();
                 self.apart = true;
                 self.set_kind("rapid");
+                return false;
+            }
+            self.widened += 1;
+            if self.widened > MOST_WIDENED {
+                let why = format!(
+                    "{MOST_WIDENED} motions of it went farther off the CL path than those before them"
+                );
+                self.lose_the_place(motion, &why);
                 return false;
             }
             if !self.widen(motion, places, begun) {
@@ -207,10 +218,8 @@ impl<C: Course> Verifier<'_, C> {
     }
 
     /// Nobody can say any more where on the course the program stands: nothing of it is looked at further.
-    fn lose_the_place(&mut self, motion: &Motion) {
-        let message = format!(
-            "verify has lost the program's place: more than {MOST_AT_ONCE} pieces of the CL path lie within the tolerance of one point, or more than {MOST_HELD} pairs of a piece of it and one of this motion"
-        );
+    fn lose_the_place(&mut self, motion: &Motion, why: &str) {
+        let message = format!("verify has lost the program's place: {why}");
         let cl_line = self.stands_at();
         self.fault("lost", message, Some(motion), Some(cl_line), None);
         self.found.gave_up = true;

@@ -118,6 +118,9 @@ pub(super) const MOST_AT_ONCE: usize = 10_000;
 /// Pieces of one motion are held against so many elements in all: one that turns hundreds of times near many of them is lost.
 pub(super) const MOST_HELD: usize = 10_000_000;
 
+/// A program is lost whose motions go farther off so often: a loop of circles beside the path takes minutes else.
+pub(super) const MOST_WIDENED: u32 = 20_000;
+
 /// Commands of the spindle that are kept of a tool.
 pub(super) const MOST_SPEEDS: usize = 64;
 

@@ -11,6 +11,9 @@ const POLE: f64 = 1e-7;
 /// Sine below which the machine's X axis runs along the tool.
 const ALONG: f64 = 1e-6;
 
+/// What three angles of a plane with three decimals of a degree, and those of two rotary axes, turn it by at most, radians.
+pub const ROUNDED: f64 = 3e-5;
+
 /// A frame whose third axis is the tool axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TiltedPlane {

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use post_machine::axis_words;
 use post_machine::description::Tcp;
 use post_machine::kinematics::{Joints, Pose};
+use post_machine::tilted_plane::ROUNDED;
 
 use super::nominal::{AxisTravels, NominalTime};
 use super::tool_alignment::ToolAlignment;
@@ -31,9 +32,6 @@ const SAME: f64 = 1e-9;
 /// A slide leans from the coordinate that its word has under tool centre point control, or a tool from the slide of the depth,
 /// mm a mm: more than the last bits of directions. Measured leans are far larger, and none of them may come in ahead.
 const LEANS: f64 = 1e-9;
-
-/// A plane leans by no more where its three angles and the two rotary axes have three decimals of a degree, mm a mm.
-const ROUNDED_PLANE: f64 = 3e-5;
 
 /// The word of a plane along its normal.
 const DEPTH: usize = 2;
@@ -133,7 +131,7 @@ impl BlockStage<'_> {
         if let Some(normal) = self.plane_normal() {
             // Along it, and not into the part, it is the plane's own Z: the others come first where that is its word. In a
             // plane that leans they would move the depth too, past its end of travel and ahead of the tool's length.
-            let along = way.cross(&normal).norm() <= ROUNDED_PLANE && way.dot(&normal) > 0.0;
+            let along = way.cross(&normal).norm() <= ROUNDED && way.dot(&normal) > 0.0;
             let word = axis_words::coordinate(machine.axes[depth].word());
             return word != DEPTH || !along;
         }

@@ -35,7 +35,9 @@ impl ControlState {
         target: &mut MotionTarget,
     ) -> Result<Curve, Box<Diagnostic>> {
         let [first, second, third] = self.modal.plane.coordinates();
-        self.least_increments(words, SHAPE)?;
+        if words.pointless & SHAPE != 0 {
+            self.least_increments(words, SHAPE)?;
+        }
         let from = self.point();
         let to = Vector3::from_fn(|row, _| target.point[row].unwrap_or(from[row]));
         // The rest of the words counts from one point, also where the end says nothing.

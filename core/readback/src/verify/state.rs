@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use post_machine::axis_words::is_depth;
+use post_machine::tilted_plane::ROUNDED;
 use post_plugin::Lengths;
 
 use super::place::{ToolPlace, free, nearest_point};
@@ -24,9 +25,6 @@ const DWELL: f64 = 0.01;
 
 /// Ways shorter than this take no time that could be compared, mm.
 pub(super) const SHORT: f64 = 1e-3;
-
-/// What three angles of a plane with three decimals of a degree, and those of two rotary axes, turn it by at most, radians.
-const ROUNDED: f64 = 3e-5;
 
 impl<C: Course> Verifier<'_, C> {
     /// Compares what holds in a cut with what the course asks for where the motion has its place.

@@ -181,7 +181,7 @@ impl Process {
     }
 
     /// Nothing has been told yet of the next batch.
-    pub(crate) fn forget_progress(&self, count: usize) {
+    pub(crate) fn forget_progress(&mut self, count: usize) {
         self.progress.forget(count);
     }
 

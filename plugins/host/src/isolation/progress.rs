@@ -81,7 +81,7 @@ impl Progress {
     }
 
     /// None of `count` events has been told.
-    pub(crate) fn forget(&self, count: usize) {
+    pub(crate) fn forget(&mut self, count: usize) {
         for index in 0..count.min(EVENTS) {
             // SAFETY: within the memory. A library that was left alone may write there still, so nothing borrows it.
             unsafe { self.ends.add(index).as_ptr().write_volatile(u64::MAX) };

@@ -29,8 +29,8 @@ pub(super) fn define(
         (7..=11 | 13 | 19 | 26 | 32, 0) => Ok(()),
         (7, _) => {
             // `7.1 #5`: a row of a table in the control.
-            let axes = said.block.items.iter().skip(2);
-            if let Some(other) = axes.clone().find(|item| !matches!(item, NcItem::Word(_))) {
+            let mut axes = said.block.items.iter().skip(2);
+            if let Some(other) = axes.find(|item| !matches!(item, NcItem::Word(_))) {
                 let message =
                     format!("CYCL DEF 7 by {}: a table of the control, or no shift", told(other));
                 return Err(control.refuse("nc-frame", message));

@@ -218,10 +218,13 @@ fn levels_said(
     let axis = control.modal.plane.coordinates()[2];
     let letter = [b'X', b'Y', b'Z'][axis];
     let code = code.unwrap_or_default();
-    control.least_increments(words, bit(letter) | bit(b'R'))?;
+    let levels = bit(letter) | bit(b'R');
+    if words.pointless & levels != 0 {
+        control.least_increments(words, levels)?;
+    }
     let mut running = begun(control, code, meaning, axis)?;
     let incremental = control.modal.incremental;
-    let refused = words.incremental & (bit(letter) | bit(b'R'));
+    let refused = words.incremental & levels;
     if refused != 0 {
         return Err(
             control.refuse("nc-cycle", "a level of this cycle is incremental by a word of its own")

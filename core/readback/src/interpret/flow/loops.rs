@@ -242,14 +242,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
         let body = self.reader.mark();
         match kind {
             Some(kind) => self.skip_loop(name, kind)?,
-            None => {
-                self.skip(
-                    name,
-                    |flow| matches!(flow, NcFlow::If { .. }),
-                    |flow| matches!(flow, NcFlow::EndIf(_)),
-                    |flow| matches!(flow, NcFlow::EndIf(_)),
-                )?;
-            }
+            None => self.skip_branch(name)?,
         }
         self.go_to(body)
     }
@@ -272,6 +265,12 @@ impl<R: Read + Seek> ProgramFlow<R> {
                 flow => return Ok(!matches!(flow, NcFlow::EndIf(_))),
             }
         }
+    }
+
+    /// On to what stands behind the end of a branch.
+    pub(super) fn skip_branch(&mut self, name: Option<&str>) -> FlowResult<()> {
+        let ends: LoopTest = |flow| matches!(flow, NcFlow::EndIf(_));
+        self.skip(name, |flow| matches!(flow, NcFlow::If { .. }), ends, ends).map(|_| ())
     }
 
     fn skip_loop(&mut self, name: Option<&str>, kind: LoopKind) -> FlowResult<()> {

@@ -332,12 +332,7 @@ impl<R: Read + Seek> ProgramFlow<R> {
                 Ok(true)
             }
             NcFlow::ElseIf { name, .. } | NcFlow::Else(name) => {
-                self.skip(
-                    name.as_deref(),
-                    |flow| matches!(flow, NcFlow::If { .. }),
-                    |flow| matches!(flow, NcFlow::EndIf(_)),
-                    |flow| matches!(flow, NcFlow::EndIf(_)),
-                )?;
+                self.skip_branch(name.as_deref())?;
                 self.branches = self.branches.saturating_sub(1);
                 Ok(false)
             }

@@ -65,7 +65,7 @@ fn what_is_not_followed_is_refused() {
             "heidenhain",
             Corner,
             "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 #1\n",
-            "CYCL DEF 7 by",
+            "CYCL DEF 7 without an axis",
         ),
         (
             "vmc",
@@ -83,6 +83,25 @@ fn what_is_not_followed_is_refused() {
         ("vmc", "heidenhain", Cycle, "M136\n", "under M136"),
         ("vmc", "heidenhain", Corner, "M103 F20\n", "M103 F is not run"),
         ("vmc", "heidenhain", Approach, "FUNCTION MODE TURN\n", "`TURN` is not known"),
+        (
+            "vmc",
+            "heidenhain",
+            Corner,
+            "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+0 X+5\n",
+            "X is no",
+        ),
+        ("vmc", "heidenhain", Corner, "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+0 FOO\n", "`FOO`"),
+        ("vmc", "heidenhain", Corner, "CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 5\n", "the number 5"),
+        ("vmc", "heidenhain", Corner, "CC X+10 Y+5 FMAX\n", "`FMAX` is not known"),
+        ("vmc", "heidenhain", Corner, "CC X+10 Y+5 M5\n", "M5 is not run in this block"),
+        ("vmc", "heidenhain", Corner, "L Y+30 MB MAX\n", "`MB MAX` is not known"),
+        ("vmc", "heidenhain", Corner, "L Y+30 DR+\n", "`DR+` is not known"),
+        ("vmc", "heidenhain", Corner, "FUNCTION RESET TCPM X+5\n", "X is no"),
+        ("vmc", "heidenhain", Corner, "PLANE RESET STAY SPA+30\n", "`SPA` is not known"),
+        ("vmc", "heidenhain", Corner, "PLANE RESET STAY MOVE\n", "two of TURN, MOVE and STAY"),
+        ("vmc", "heidenhain", Corner, "TOOL DEF 5 L+10 R+3\n", "TOOL DEF with L and R"),
+        ("vmc", "heidenhain", Corner, "PLANE RESET STAY \"D10\"\n", "the text \"D10\""),
+        ("vmc", "heidenhain", Approach, "TOOL CALL S3000 M4\n", "M4 is not run in this block"),
         ("vmc", "heidenhain", Corner, "CC X+40 Y-20\nCP IPA+36000000 DR+\n", "CP by 100000 turns"),
         (
             "vmc",
@@ -99,6 +118,7 @@ fn what_is_not_followed_is_refused() {
         ("vmc", "siemens", Corner, "IF TRUE\n", "what begins here does not end"),
         ("osp-mill", "okuma", Corner, "G55 H1\n", "G55"),
         ("osp-mill", "okuma", Corner, "G54 H1\n", "G54"),
+        ("osp-mill", "okuma", Corner, "G57 H1\n", "G57"),
     ] {
         let run = judged(machine, dialect, ahead, lines);
         assert_eq!(run.code, 1, "{dialect} {lines}: {}{}", run.out, run.err);
@@ -132,12 +152,38 @@ fn what_is_right_stays_so() {
         ),
         ("vmc", "heidenhain", Approach, "TOOL CALL S3000\n"),
         ("vmc", "heidenhain", Approach, "FUNCTION MODE MILL\n"),
+        ("vmc", "heidenhain", Approach, "TOOL DEF 5\nTOOL DEF \"D10\"\n"),
+        (
+            "vmc",
+            "heidenhain",
+            Approach,
+            "BLK FORM 0.1 Z X-50 Y-50 Z-20\nBLK FORM 0.2 X+50 Y+50 Z+0\n",
+        ),
+        ("vmc", "heidenhain", Corner, "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+0\n"),
         ("vmc", "fanuc", Corner, "; the corner\n"),
         ("vmc", "fanuc", Corner, "(CORNER);\n"),
         ("vmc", "siemens", Corner, "IF TRUE\nENDIF\nFOR R1=1 TO 3\nENDFOR\n"),
     ] {
         let run = judged(machine, dialect, ahead, lines);
         assert_eq!(run.code, 0, "{dialect} {lines}: {}", run.err);
+    }
+}
+
+/// Smoothing whose rule no program names: a machine file that has no tolerance for it leaves unsaid what it costs.
+#[test]
+fn smoothing_by_the_control_is_warned_of() {
+    for (dialect, lines) in [
+        ("fanuc", "G5.1 Q2\n"),
+        ("fanuc", "G5 P10000\n"),
+        ("mazak", "G5 P2\n"),
+        ("mitsubishi", "G5.1 Q1\n"),
+        ("siemens", "COMPCAD\n"),
+        ("fagor", "G50\n"),
+    ] {
+        let run = judged("vmc", dialect, Ahead::Corner, lines);
+        assert!(run.err.contains("warning[smoothing]"), "{dialect} {lines}: {}", run.err);
+        let run = judged("vmc", dialect, Ahead::Corner, "");
+        assert!(!run.err.contains("smoothing"), "{dialect}: {}", run.err);
     }
 }
 

@@ -1,9 +1,10 @@
 //! `CYCL DEF`: those of the 200 series wait for their call, those with small numbers take effect at once.
 
 use nalgebra::{Matrix3, Vector3};
-use post_grammar::nc::{NcItem, NcNumber};
+use post_grammar::nc::NcNumber;
 
-use super::{Answer, BlockNames, afterwards, functions, plane, worth};
+use super::items::BlockItems;
+use super::{Answer, afterwards, functions, plane, worth};
 use crate::ProgramEvent;
 use crate::interpret::block::BlockRequest;
 use crate::interpret::block_words::{BlockWords, bit};
@@ -16,7 +17,7 @@ use crate::interpret::variables::VariableValue;
 /// `CYCL DEF n …` and the lines `CYCL DEF n.m` of one.
 pub(super) fn define(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
     let Some(NcNumber { value, .. }) = said.number() else {
@@ -24,17 +25,15 @@ pub(super) fn define(
     };
     let cycle = libm::floor(value + 1e-9) as u32;
     let line = libm::rint((value - f64::from(cycle)) * 10.0) as u32;
+    if line == 0 {
+        // The title, in the language of the dialogue.
+        let _ = said.text();
+    }
     match (cycle, line) {
         // The head of one whose values stand in lines of their own.
         (7..=11 | 13 | 19 | 26 | 32, 0) => Ok(()),
         (7, _) => {
             // `7.1 #5`: a row of a table in the control.
-            let mut axes = said.block.items.iter().skip(2);
-            if let Some(other) = axes.find(|item| !matches!(item, NcItem::Word(_))) {
-                let message =
-                    format!("CYCL DEF 7 by {}: a table of the control, or no shift", told(other));
-                return Err(control.refuse("nc-frame", message));
-            }
             if words.present & control.axes.mask == 0 {
                 let message = "CYCL DEF 7 without an axis: a table of the control, or no shift";
                 return Err(control.refuse("nc-frame", message));
@@ -42,26 +41,19 @@ pub(super) fn define(
             let by = shifts(control, words)?;
             shift(control, by)
         }
-        (8, _) => match words.present & control.axes.mask | u32::from(said.names().count() > 1) {
-            0 => Ok(()),
-            _ => Err(control.refuse("nc-cycle", "CYCL DEF 8: a mirror image is not run")),
+        // `8.1 X Y`: axes by their names. Without one it ends.
+        (8, _) => match said.next_name().is_some() || words.present & control.axes.mask != 0 {
+            true => Err(control.refuse("nc-cycle", "CYCL DEF 8: a mirror image is not run")),
+            false => Ok(()),
         },
         (9, _) => {
             // `CYCL DEF 9.1 DWELL 0.5`, in the language of the dialogue.
-            let mut times = said.block.items.iter().skip(2).filter_map(|item| match item {
-                NcItem::Number(number) => Some(number.value),
-                NcItem::Named { value: post_grammar::nc::NcValue::Number(number), .. } => {
-                    Some(number.value)
-                }
-                _ => None,
-            });
-            match times.next() {
-                Some(time) => {
-                    control.tell(ProgramEvent::Dwell { time, revolutions: false });
-                    Ok(())
-                }
-                None => Err(control.refuse("nc-cycle", "CYCL DEF 9 does not say how long")),
-            }
+            let named = said.next_named().map(|(_, value)| worth(control, value)).transpose()?;
+            let Some(time) = named.or_else(|| said.number().map(|number| number.value)) else {
+                return Err(control.refuse("nc-cycle", "CYCL DEF 9 does not say how long"));
+            };
+            control.tell(ProgramEvent::Dwell { time, revolutions: false });
+            Ok(())
         }
         (10, _) => turn(control, said),
         (11, _) => match said.named(control, "SCL")? {
@@ -69,6 +61,8 @@ pub(super) fn define(
             _ => Err(control.refuse("nc-cycle", "CYCL DEF 11: a scale is not run")),
         },
         (13, _) => {
+            // The angle, in the language of the dialogue.
+            let _ = said.next_named();
             control.turn_spindle(SpindleRequest::Oriented);
             Ok(())
         }
@@ -83,7 +77,8 @@ pub(super) fn define(
             if let Some(angle) = said.named(control, "TA")? {
                 control.leaves_axis(angle);
             }
-            words.used |= words.present;
+            // Roughing or finishing: what the control makes of it is told by its parameters.
+            let _ = said.named(control, "HSC-MODE")?;
             Ok(())
         }
         (247, _) => {
@@ -100,25 +95,13 @@ pub(super) fn define(
     }
 }
 
-/// What an item of a block is called.
-fn told(item: &NcItem) -> String {
-    match item {
-        NcItem::Name(name) | NcItem::Named { name, .. } => name.to_string(),
-        NcItem::Number(number) => number.value.to_string(),
-        NcItem::Text(text) => text.clone(),
-        _ => "something that is no word of an axis".to_owned(),
-    }
-}
-
 /// A cycle that is called later; its parameters are variables too.
-fn remember(control: &mut ControlState, cycle: u32, said: &BlockNames<'_>) -> Answer<()> {
+fn remember(control: &mut ControlState, cycle: u32, said: &BlockItems<'_>) -> Answer<()> {
     let mut values = Vec::new();
-    for item in &said.block.items {
-        let NcItem::Named { name, value } = item else {
-            continue;
-        };
+    while let Some((name, value)) = said.next_named() {
         let Some(number) = name.strip_prefix('Q').and_then(|digits| digits.parse().ok()) else {
-            continue;
+            let message = format!("`{name}` is no parameter of a cycle");
+            return Err(control.refuse("nc-cycle", message));
         };
         let value = match value {
             // `Q208=MAX` and its like are no numbers.
@@ -141,10 +124,10 @@ fn remember(control: &mut ControlState, cycle: u32, said: &BlockNames<'_>) -> An
 /// `CYCL CALL`: where the tool stands.
 pub(super) fn call(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.only(control, &["FMAX"], &[])?;
+    said.pass(&["FMAX"]);
     let mut asked = BlockRequest::default();
     let functions = functions(control, words, &mut asked)?;
     if words.present & control.axes.mask != 0 || functions.machine {
@@ -200,10 +183,10 @@ fn shift(control: &mut ControlState, by: Shift) -> Answer<()> {
 /// `TRANS DATUM AXIS X+10`, `TRANS DATUM RESET`.
 pub(super) fn datum(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.only(control, &["AXIS", "RESET"], &[])?;
+    said.pass(&["AXIS"]);
     let by = match said.has("RESET") {
         true => [Some((0.0, false)); 3],
         false => shifts(control, words)?,
@@ -212,7 +195,7 @@ pub(super) fn datum(
 }
 
 /// `CYCL DEF 10.1 ROT+30`: the coordinates are turned about the tool axis.
-fn turn(control: &mut ControlState, said: &BlockNames<'_>) -> Answer<()> {
+fn turn(control: &mut ControlState, said: &BlockItems<'_>) -> Answer<()> {
     let Some(angle) = said.named(control, "ROT")? else {
         return Err(control.refuse("nc-cycle", "CYCL DEF 10 without ROT, or by a way"));
     };

@@ -4,16 +4,20 @@
 //! |---|---|
 //! | `path` | L, LN, CC, C, CR, CT, CP, LP |
 //! | `tool` | TOOL CALL, TOOL DEF |
+//! | `items` | names, named values, numbers and texts of a block, and which of them have been read |
 //! | `cycle` | CYCL DEF, CYCL CALL |
 //! | `plane` | PLANE, cycle 19, M128 and its like |
 
 mod cycle;
+mod items;
 mod path;
 mod plane;
 mod tool;
 
+use std::mem;
+
 use nalgebra::Vector3;
-use post_grammar::nc::{NcBlock, NcItem, NcNumber, NcValue};
+use post_grammar::nc::{NcBlock, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Meaning;
 
@@ -22,6 +26,7 @@ use super::block_words::BlockWords;
 use super::spindle_request::SpindleRequest;
 use super::state::{ControlState, MotionMode};
 use crate::{MotionKind, ProgramEvent};
+use items::BlockItems;
 
 type Answer<T> = Result<T, Box<Diagnostic>>;
 
@@ -49,48 +54,79 @@ pub(super) fn run(
     control.gather(block, words)?;
     // Words of axes are positions, or ways by a letter of their own; L and its like name the motion.
     control.modal.motion = MotionMode::Linear;
-    let said = BlockNames { block };
     if let Some(code) = words.g.list().first() {
         let message = format!("G{code} in a program of the dialogue: it is no word there");
         return Err(control.refuse("nc-conversational", message));
     }
-    let first = match block.items.first() {
-        Some(NcItem::Name(first)) => first,
+    let said = BlockItems::new(control, block)?;
+    match block.items.first() {
+        Some(NcItem::Name(first)) => by_name(control, first, &said, words)?,
         // `CHF 2`, `RND 2`, `FOO 5`: what the block is called, and its value.
         Some(NcItem::Named { name, .. }) => return Err(not_run(control, name)),
-        _ => return path::alone(control, &said, words),
-    };
-    match &**first {
-        "L" => path::line(control, &said, words),
-        "LN" => path::line_with_normal(control, &said, words),
-        "CC" => path::pole(control, &said, words),
-        "C" | "CR" | "CT" | "CP" | "LP" => path::curve(control, first, &said, words),
-        "TOOL CALL" => tool::call(control, &said, words),
-        "TOOL DEF" => tool::prepare(control, &said),
-        "CYCL DEF" => cycle::define(control, &said, words),
-        "CYCL CALL" => cycle::call(control, &said, words),
+        _ => path::alone(control, &said, words)?,
+    }
+    // Each word is accounted for: what no function has read might change what the block does.
+    said.all_read(control)?;
+    if let Some(code) = words.m.list().first() {
+        let message = format!("M{code} is not run in this block");
+        return Err(control.refuse("nc-conversational", message));
+    }
+    control.left_over(words)
+}
+
+/// Runs the block that begins with the name `first`.
+fn by_name(
+    control: &mut ControlState,
+    first: &str,
+    said: &BlockItems<'_>,
+    words: &mut BlockWords,
+) -> Answer<()> {
+    match first {
+        "L" => path::line(control, said, words),
+        "LN" => path::line_with_normal(control, said, words),
+        "CC" => path::pole(control, words),
+        "C" | "CR" | "CT" | "CP" | "LP" => path::curve(control, first, said, words),
+        "TOOL CALL" => tool::call(control, said, words),
+        "TOOL DEF" => tool::prepare(control, said, words),
+        "CYCL DEF" => cycle::define(control, said, words),
+        "CYCL CALL" => cycle::call(control, said, words),
         "PLANE SPATIAL" | "PLANE EULER" | "PLANE VECTOR" | "PLANE AXIAL" | "PLANE RESET" => {
-            plane::plane(control, first, &said, words)
+            plane::plane(control, first, said, words)
         }
-        "TRANS DATUM" => cycle::datum(control, &said, words),
-        "FUNCTION TCPM" => plane::keep_tip(control, &said),
+        "TRANS DATUM" => cycle::datum(control, said, words),
+        "FUNCTION TCPM" => {
+            plane::keep_tip(control, said);
+            Ok(())
+        }
         "FUNCTION RESET TCPM" => {
             control.set_tcp(false, None, false);
             Ok(())
         }
-        "FUNCTION MODE" => said.only(control, &["MILL"], &[]),
-        "BEGIN PGM" => begin(control, &said),
+        "FUNCTION MODE" => {
+            said.pass(&["MILL"]);
+            Ok(())
+        }
+        "BEGIN PGM" => {
+            begin(control, said);
+            Ok(())
+        }
         "END PGM" => {
+            said.pass_all();
             control.end();
             Ok(())
         }
-        "BLK FORM" => Ok(()),
+        // The blank, for the picture on the screen.
+        "BLK FORM" => {
+            said.pass_all();
+            words.used |= words.present;
+            Ok(())
+        }
         "STOP" => {
             control.stop(ProgramEvent::Stop)?;
-            path::alone(control, &said, words)
+            path::alone(control, said, words)
         }
         // Words of modes alone: `R0 FMAX`, `FMAX M3`.
-        "R0" | "RL" | "RR" | "FMAX" => path::alone(control, &said, words),
+        "R0" | "RL" | "RR" | "FMAX" => path::alone(control, said, words),
         other => Err(not_run(control, other)),
     }
 }
@@ -105,86 +141,12 @@ pub(super) fn feed_unit(control: &ControlState) -> f64 {
     if control.modal.unit == 1.0 { 1.0 } else { 0.1 * control.modal.unit }
 }
 
-fn begin(control: &mut ControlState, said: &BlockNames<'_>) -> Answer<()> {
+fn begin(control: &mut ControlState, said: &BlockItems<'_>) {
     let inches = said.has("INCH") || said.has("IN");
     control.modal.unit = if inches { 25.4 } else { 1.0 };
     control.tools.by_tool = true;
     control.tools.length_on = true;
-    Ok(())
-}
-
-/// What a block says besides letters with values.
-struct BlockNames<'b> {
-    block: &'b NcBlock,
-}
-
-impl BlockNames<'_> {
-    /// The name stands in the block.
-    fn has(&self, wanted: &str) -> bool {
-        self.names().any(|name| name == wanted)
-    }
-
-    /// Names in the block but the first item.
-    fn names(&self) -> impl Iterator<Item = &str> {
-        self.block.items.iter().filter_map(|item| match item {
-            NcItem::Name(name) => Some(&**name),
-            _ => None,
-        })
-    }
-
-    /// The value after a longer name: `SPA+30`.
-    fn named(&self, control: &ControlState, wanted: &str) -> Answer<Option<f64>> {
-        for item in &self.block.items {
-            if let NcItem::Named { name, value } = item
-                && &**name == wanted
-            {
-                return worth(control, value).map(Some);
-            }
-        }
-        Ok(None)
-    }
-
-    /// The number alone, of a cycle or a tool.
-    fn number(&self) -> Option<NcNumber> {
-        self.block.items.iter().find_map(|item| match item {
-            NcItem::Number(number) => Some(*number),
-            _ => None,
-        })
-    }
-
-    /// Refuses a number without a letter: `X+77..105` is X+77. and something that is not meant.
-    fn no_number(&self, control: &ControlState) -> Answer<()> {
-        match self.number() {
-            Some(number) => {
-                let message = format!("the number {} belongs to no word", number.value);
-                Err(control.refuse("nc-conversational", message))
-            }
-            None => Ok(()),
-        }
-    }
-
-    /// The text alone.
-    fn text(&self) -> Option<&str> {
-        self.block.items.iter().find_map(|item| match item {
-            NcItem::Text(text) => Some(text.as_str()),
-            _ => None,
-        })
-    }
-
-    /// Refuses names and named values that are not in these lists: each may change what the block does.
-    fn only(&self, control: &ControlState, names: &[&str], named: &[&str]) -> Answer<()> {
-        for item in self.block.items.iter().skip(1) {
-            let other = match item {
-                NcItem::Name(name) if !names.contains(&&**name) => name,
-                NcItem::Named { name, .. } if !named.contains(&&**name) => name,
-                _ => continue,
-            };
-            let message =
-                format!("`{other}` is not known in this block, and might change what it does");
-            return Err(control.refuse("nc-conversational", message));
-        }
-        Ok(())
-    }
+    said.pass_all();
 }
 
 fn worth(control: &ControlState, value: &NcValue) -> Answer<f64> {
@@ -202,16 +164,18 @@ struct MiscFunctions {
     retract: bool,
     /// M129.
     tcp_off: bool,
+    /// M94.
+    within_a_turn: bool,
 }
 
 /// Takes the M functions of a block: what they switch on holds while it moves; `asked` keeps what ends with it.
 fn functions(
     control: &mut ControlState,
-    words: &BlockWords,
+    words: &mut BlockWords,
     asked: &mut BlockRequest,
 ) -> Answer<MiscFunctions> {
     let mut functions = MiscFunctions::default();
-    for &code in words.m.list() {
+    for &code in mem::take(&mut words.m).list() {
         match code {
             89 => control.cycles.at_each = true,
             91 => functions.machine = true,
@@ -220,7 +184,10 @@ fn functions(
                     .refuse("nc-machine", "M92 counts from a point that stands in the control"));
             }
             // The display of a rotary axis is brought within a turn: the axis stands where it stood.
-            94 => plane::within_a_turn(control, words)?,
+            94 => {
+                plane::within_a_turn(control, words)?;
+                functions.within_a_turn = true;
+            }
             97 | 98 | 101 | 120 | 138 | 144 => {
                 return Err(control.refuse(
                     "nc-conversational",
@@ -302,24 +269,20 @@ fn not_thicker(control: &ControlState) -> Answer<()> {
 /// Feed, and whether the block goes at rapid; radius compensation.
 fn modes(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<MotionKind> {
-    let mut kind = MotionKind::Feed;
-    for name in said.names() {
-        match name {
-            "FMAX" => kind = MotionKind::Rapid,
-            "FAUTO" => {
-                return Err(
-                    control.refuse("nc-feed", "FAUTO: the feed of the tool call is not kept")
-                );
-            }
-            "R0" => control.compensate(0, words)?,
-            "RL" | "RR" => {
-                not_thicker(control)?;
-                control.compensate(if name == "RL" { -1 } else { 1 }, words)?;
-            }
-            _ => {}
+    let kind = if said.has("FMAX") { MotionKind::Rapid } else { MotionKind::Feed };
+    if said.has("FAUTO") {
+        return Err(control.refuse("nc-feed", "FAUTO: the feed of the tool call is not kept"));
+    }
+    if said.has("R0") {
+        control.compensate(0, words)?;
+    }
+    for (name, side) in [("RL", -1), ("RR", 1)] {
+        if said.has(name) {
+            not_thicker(control)?;
+            control.compensate(side, words)?;
         }
     }
     if let Some(feed) = words.take(b'F') {

@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
-use super::{Answer, BlockNames, afterwards, functions, modes, not_thicker, plane};
+use super::items::BlockItems;
+use super::{Answer, afterwards, functions, modes, not_thicker, plane};
 use crate::interpret::arcs::MOST_TURNS;
 use crate::interpret::block::BlockRequest;
 use crate::interpret::block_words::{BlockWords, bit};
@@ -13,20 +14,15 @@ use crate::interpret::go::MotionTarget;
 use crate::interpret::state::{ArcPlane, ControlState};
 use crate::{Curve, MotionKind};
 
-/// Names that may stand in a block of the path.
-const NAMES: &[&str] = &["R0", "RL", "RR", "FMAX", "FAUTO", "DR+", "DR-", "MB MAX", "MAX"];
-
 /// Points nearer than this share a coordinate, mm.
 const SHARED: f64 = 1e-6;
 
 /// `L`: straight to the words of the block.
 pub(super) fn line(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.no_number(control)?;
-    said.only(control, NAMES, &["MB"])?;
     let kind = modes(control, said, words)?;
     straight(control, kind, said, words, None)
 }
@@ -34,11 +30,9 @@ pub(super) fn line(
 /// Words without the name of a path function: M functions, feed, compensation; `M140 MB MAX`.
 pub(super) fn alone(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.no_number(control)?;
-    said.only(control, NAMES, &["MB"])?;
     if words.present & control.axes.mask != 0 && !words.m.has(94) {
         return Err(control
             .refuse("nc-conversational", "words of axes without the name of a path function"));
@@ -50,14 +44,14 @@ pub(super) fn alone(
 /// `LN`: the surface's normal is for the compensation of the tool's radius, T is the tool axis.
 pub(super) fn line_with_normal(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.no_number(control)?;
-    said.only(control, NAMES, &["NX", "NY", "NZ", "TX", "TY", "TZ"])?;
     // The surface's normal: along it the control moves the tool by what it is thicker.
-    if said.named(control, "NX")?.is_some() {
-        not_thicker(control)?;
+    for name in ["NX", "NY", "NZ"] {
+        if said.named(control, name)?.is_some() {
+            not_thicker(control)?;
+        }
     }
     let mut vector = Vector3::zeros();
     let mut any = false;
@@ -74,7 +68,7 @@ pub(super) fn line_with_normal(
 fn straight(
     control: &mut ControlState,
     kind: MotionKind,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
     vector: Option<Vector3<f64>>,
 ) -> Answer<()> {
@@ -93,13 +87,12 @@ fn straight(
         let rapid = kind == MotionKind::Rapid;
         control.machine_move(words, rapid)?;
         control.path.heading = None;
-    } else if moving && !words.m.has(94) {
+    } else if moving && !functions.within_a_turn {
         let mut target = control.target(words)?;
         target.vector = vector;
         travel(control, kind, &Curve::Straight, &target)?;
     }
-    afterwards(control, functions, &asked)?;
-    left_over(control, words)
+    afterwards(control, functions, &asked)
 }
 
 /// Goes to a target, keeps which way it came, and calls the cycle that is called at each point.
@@ -126,12 +119,7 @@ fn travel(
 }
 
 /// `CC X+10 Y+5`: the pole; without words where the tool stands.
-pub(super) fn pole(
-    control: &mut ControlState,
-    said: &BlockNames<'_>,
-    words: &mut BlockWords,
-) -> Answer<()> {
-    said.no_number(control)?;
+pub(super) fn pole(control: &mut ControlState, words: &mut BlockWords) -> Answer<()> {
     let here = control.point();
     let mut any = false;
     for (row, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {
@@ -144,18 +132,16 @@ pub(super) fn pole(
     if !any {
         control.path.pole = [Some(here.x), Some(here.y), None];
     }
-    left_over(control, words)
+    Ok(())
 }
 
 /// `C`, `CR`, `CT`, `CP`, `LP`.
 pub(super) fn curve(
     control: &mut ControlState,
     name: &str,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.no_number(control)?;
-    said.only(control, NAMES, &["PR", "PA", "IPR", "IPA"])?;
     let kind = modes(control, said, words)?;
     let mut asked = BlockRequest::default();
     let functions = functions(control, words, &mut asked)?;
@@ -200,8 +186,7 @@ pub(super) fn curve(
     };
     target.point = [Some(end.x), Some(end.y), Some(end.z)];
     travel(control, kind, &path, &target)?;
-    afterwards(control, functions, &asked)?;
-    left_over(control, words)
+    afterwards(control, functions, &asked)
 }
 
 /// About the pole in the plane across the tool axis. Where the pole was given with Z too, all three coordinates count,
@@ -277,7 +262,7 @@ struct PolarEnd {
     by: Option<f64>,
 }
 
-fn polar(control: &ControlState, said: &BlockNames<'_>, from: Vector3<f64>) -> Answer<PolarEnd> {
+fn polar(control: &ControlState, said: &BlockItems<'_>, from: Vector3<f64>) -> Answer<PolarEnd> {
     let [Some(x), Some(y), _] = control.path.pole else {
         return Err(control.refuse("nc-arc", "polar coordinates without CC in front of them"));
     };
@@ -318,9 +303,4 @@ impl PolarEnd {
         }
         arc(control, ArcPlane::Xy, from, self.end, self.centre, clockwise)
     }
-}
-
-/// Letters that were not used.
-pub(super) fn left_over(control: &mut ControlState, words: &mut BlockWords) -> Answer<()> {
-    control.left_over(words)
 }

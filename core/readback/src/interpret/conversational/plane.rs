@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 use post_machine::tilted_plane::rotation;
 
-use super::{Answer, BlockNames, feed_unit};
+use super::items::BlockItems;
+use super::{Answer, feed_unit};
 use crate::MotionKind;
 use crate::interpret::block_words::{BlockWords, bit};
 use crate::interpret::frame::CoordinateFrame;
@@ -11,36 +12,18 @@ use crate::interpret::planes::{self, PlaneTurn, SolutionChoice};
 use crate::interpret::state::{ControlState, OrientationMode};
 use crate::interpret::variables::VariableValue;
 
-/// Names that say how the axes turn to a plane.
-const NAMES: &[&str] = &[
-    "TURN",
-    "MOVE",
-    "STAY",
-    "FMAX",
-    "SEQ+",
-    "SEQ-",
-    "SYM+",
-    "SYM-",
-    "COORD ROT",
-    "TABLE ROT",
-    "MB MAX",
-];
-
 /// `PLANE SPATIAL SPA+30 SPB+0 SPC+0 TURN FMAX SEQ-`, and the other forms.
 pub(super) fn plane(
     control: &mut ControlState,
     name: &str,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.only(
-        control,
-        NAMES,
-        &[
-            "SPA", "SPB", "SPC", "EULPR", "EULNU", "EULROT", "BX", "BY", "BZ", "NX", "NY", "NZ",
-            "MB", "DIST", "ABST",
-        ],
-    )?;
+    // How rotary axes that turn without the tool count, and how far the tip is from where they turn about.
+    said.pass(&["COORD ROT", "TABLE ROT"]);
+    for name in ["DIST", "ABST"] {
+        let _ = said.named(control, name)?;
+    }
     if !control.frames.inner.is_default() {
         return Err(control
             .refuse("nc-plane", "a shift or turn inside of the tilted plane must end before it"));
@@ -56,10 +39,14 @@ pub(super) fn plane(
         retract(control, kind, said)?;
     }
     planes::end(control)?;
-    let how = match (said.has("TURN"), said.has("MOVE")) {
-        (true, _) => PlaneTurn::Alone,
-        (_, true) => PlaneTurn::Move,
-        _ => PlaneTurn::Stay,
+    let how = match ["TURN", "MOVE", "STAY"].map(|name| said.has(name)) {
+        [true, false, false] => PlaneTurn::Alone,
+        [false, true, false] => PlaneTurn::Move,
+        [false, false, _] => PlaneTurn::Stay,
+        _ => {
+            let message = "two of TURN, MOVE and STAY: how the axes turn is not plain";
+            return Err(control.refuse("nc-plane", message));
+        }
     };
     if name == "PLANE RESET" {
         return reset(control, how);
@@ -77,10 +64,14 @@ pub(super) fn plane(
         }
     };
     planes::lay(control, frame)?;
-    let pick = match (said.has("SEQ+") || said.has("SYM+"), said.has("SEQ-") || said.has("SYM-")) {
-        (true, _) => SolutionChoice::Plus,
-        (_, true) => SolutionChoice::Minus,
-        _ => SolutionChoice::Nearest,
+    let pick = match ["SEQ+", "SYM+", "SEQ-", "SYM-"].map(|name| said.has(name)) {
+        [false, false, false, false] => SolutionChoice::Nearest,
+        [_, _, false, false] => SolutionChoice::Plus,
+        [false, false, _, _] => SolutionChoice::Minus,
+        _ => {
+            let message = "SEQ or SYM of both signs: which solution is meant is not plain";
+            return Err(control.refuse("nc-plane", message));
+        }
     };
     turned(control, how, pick, kind)
 }
@@ -117,7 +108,7 @@ fn reset(control: &mut ControlState, how: PlaneTurn) -> Answer<()> {
     Ok(())
 }
 
-fn angles(control: &ControlState, said: &BlockNames<'_>, names: [&str; 3]) -> Answer<[f64; 3]> {
+fn angles(control: &ControlState, said: &BlockItems<'_>, names: [&str; 3]) -> Answer<[f64; 3]> {
     let mut angles = [0.0; 3];
     for (angle, name) in angles.iter_mut().zip(names) {
         let Some(value) = said.named(control, name)? else {
@@ -131,7 +122,7 @@ fn angles(control: &ControlState, said: &BlockNames<'_>, names: [&str; 3]) -> An
 /// Turns about the fixed axes A, then B, then C.
 fn spatial(
     control: &ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     names: [&str; 3],
 ) -> Answer<CoordinateFrame> {
     let [a, b, c] = angles(control, said, names)?;
@@ -139,7 +130,7 @@ fn spatial(
 }
 
 /// B is the direction of X, which lies in the plane once its part along N, the normal, is taken off.
-fn vectors(control: &ControlState, said: &BlockNames<'_>) -> Answer<CoordinateFrame> {
+fn vectors(control: &ControlState, said: &BlockItems<'_>) -> Answer<CoordinateFrame> {
     let vector = |names: [&str; 3]| -> Answer<Vector3<f64>> {
         let mut vector = Vector3::zeros();
         for (row, name) in names.into_iter().enumerate() {
@@ -180,10 +171,13 @@ fn stands_as_said(control: &mut ControlState, words: &mut BlockWords) -> Answer<
 /// blocks.
 pub(super) fn cycle_19(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.only(control, &["FMAX"], &["DIST", "ABST"])?;
+    said.pass(&["FMAX"]);
+    for name in ["DIST", "ABST"] {
+        let _ = said.named(control, name)?;
+    }
     planes::end(control)?;
     let angles = [b'A', b'B', b'C'].map(|letter| words.take(letter).unwrap_or(0.0).to_radians());
     words.used |= bit(b'F');
@@ -196,25 +190,20 @@ pub(super) fn cycle_19(
 }
 
 /// `FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS`.
-pub(super) fn keep_tip(control: &mut ControlState, said: &BlockNames<'_>) -> Answer<()> {
-    said.only(
-        control,
-        &["F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "PATHCTRL VECTOR", "REFPNT TIP-TIP"],
-        &[],
-    )?;
+pub(super) fn keep_tip(control: &mut ControlState, said: &BlockItems<'_>) {
+    said.pass(&["F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "REFPNT TIP-TIP"]);
     control.set_tcp(true, None, false);
     control.modal.orientation = match said.has("PATHCTRL VECTOR") {
         true => OrientationMode::Circle,
         false => OrientationMode::Usual,
     };
-    Ok(())
 }
 
 /// `M140 MB MAX`, `M140 MB50`: back along the tool, to the end of the travel or by a way.
 pub(super) fn retract(
     control: &mut ControlState,
     kind: MotionKind,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
 ) -> Answer<()> {
     let far = said.has("MB MAX") || said.has("MAX");
     let way = said.named(control, "MB")?.map(|way| way * control.modal.unit);

@@ -3,7 +3,8 @@
 use post_machine::axis_words;
 use post_machine::description::LengthAxis;
 
-use super::{Answer, BlockNames, feed_unit};
+use super::items::BlockItems;
+use super::{Answer, feed_unit};
 use crate::ProgramEvent;
 use crate::interpret::block_words::BlockWords;
 use crate::interpret::state::{ArcPlane, ControlState};
@@ -11,10 +12,9 @@ use crate::interpret::state::{ArcPlane, ControlState};
 /// `TOOL CALL 5 Z S8000 F1200 DL+0.1`; without a tool it changes the speed alone.
 pub(super) fn call(
     control: &mut ControlState,
-    said: &BlockNames<'_>,
+    said: &BlockItems<'_>,
     words: &mut BlockWords,
 ) -> Answer<()> {
-    said.only(control, &["X", "Y", "Z", "U", "V", "W"], &["DL", "DR", "DR2"])?;
     let across = across(control, said)?;
     if let Some(speed) = words.take(b'S') {
         control.name_speed(speed);
@@ -45,7 +45,7 @@ pub(super) fn call(
             control.tools.longer = longer;
             control.length_changed()?;
         }
-        return control.left_over(words);
+        return Ok(());
     }
     if control.state.tcp || control.frames.plane.is_some() {
         return Err(control.refuse(
@@ -62,15 +62,14 @@ pub(super) fn call(
     if let Some(lack) = control.lies_off(across, Some("TOOL CALL")) {
         return Err(control.refuse("nc-tool", lack));
     }
-    control.length_changed()?;
-    control.left_over(words)
+    control.length_changed()
 }
 
 /// The plane across the tool axis that a call names. The length goes along that axis, so that U, V or W is to be the one of
 /// the machine file.
-fn across(control: &ControlState, said: &BlockNames<'_>) -> Answer<ArcPlane> {
-    let second = ["U", "V", "W"].into_iter().find(|name| said.has(name));
-    if let Some(name) = second {
+fn across(control: &ControlState, said: &BlockItems<'_>) -> Answer<ArcPlane> {
+    let named = ["X", "Y", "Z", "U", "V", "W"].into_iter().find(|name| said.has(name));
+    if let Some(name @ ("U" | "V" | "W")) = named {
         let machine = &control.machine;
         let own = machine.axes.iter().position(|axis| axis.word() == name);
         let along = match machine.length_axis {
@@ -85,20 +84,27 @@ fn across(control: &ControlState, said: &BlockNames<'_>) -> Answer<ArcPlane> {
             return Err(control.refuse("nc-tool", message));
         }
     }
-    let named = |main: &str, beside: &str| said.has(main) || second == Some(beside);
-    Ok(match (named("X", "U"), named("Y", "V")) {
-        (true, _) => ArcPlane::Yz,
-        (_, true) => ArcPlane::Zx,
+    Ok(match named {
+        Some("X" | "U") => ArcPlane::Yz,
+        Some("Y" | "V") => ArcPlane::Zx,
         _ => ArcPlane::Xy,
     })
 }
 
-/// `TOOL DEF 5`: it is made ready.
-pub(super) fn prepare(control: &mut ControlState, said: &BlockNames<'_>) -> Answer<()> {
-    if let Some(number) = said.number()
-        && number.value >= 0.0
-        && number.value < 1e9
-    {
+/// `TOOL DEF 5`: it is made ready. With `L` and `R` it says what the tool measures, and the table has it otherwise.
+pub(super) fn prepare(
+    control: &mut ControlState,
+    said: &BlockItems<'_>,
+    words: &BlockWords,
+) -> Answer<()> {
+    if words.get(b'L').or(words.get(b'R')).is_some() {
+        let message =
+            "TOOL DEF with L and R: the tool is measured by the program, which is not followed";
+        return Err(control.refuse("nc-tool", message));
+    }
+    let _by_name = said.text();
+    let number = said.number().filter(|number| (0.0..1e9).contains(&number.value));
+    if let Some(number) = number {
         control.tell(ProgramEvent::Preselect(number.value as u32));
     }
     Ok(())

@@ -15,6 +15,8 @@ pub struct Leeway {
     pub path: f64,
     /// From the tool axis there, radians.
     pub turn: f64,
+    /// From the path by as much as parameters of the control say, which no program names: `G5.1 Q1`.
+    pub own: bool,
 }
 
 impl MachineState {
@@ -24,7 +26,11 @@ impl MachineState {
             Corners::Said(CornerMode::Blend { tolerance }) => tolerance,
             _ => None,
         };
-        Leeway { path: self.smoothing.or(said).unwrap_or(0.0), turn: self.smoothing_turn }
+        Leeway {
+            path: self.smoothing.or(said).unwrap_or(0.0),
+            turn: self.smoothing_turn,
+            own: self.corners == Corners::Own,
+        }
     }
 }
 
@@ -39,10 +45,13 @@ impl Leeway {
     ) -> impl Iterator<Item = String> {
         let smoothing = machine.smoothing.largest();
         let most = smoothing.map_or(0.0, |smoothing| smoothing.tolerance).max(tolerance);
-        let path = (self.path > most + SAME[0]).then(|| {
-            let far = match self.path.is_finite() {
-                true => format!("by {} mm", self.path),
-                false => "by any distance".to_owned(),
+        // How far its own rule goes, the machine file says by the tolerances that it has words for.
+        let unknown = self.own && smoothing.is_none();
+        let path = (self.path > most + SAME[0] || unknown).then(|| {
+            let far = match self.path {
+                _ if unknown => "by as much as its parameters say".to_owned(),
+                path if path.is_finite() => format!("by {path} mm"),
+                _ => "by any distance".to_owned(),
             };
             format!("the control may leave the path {far}, and the tolerance is {most} mm")
         });

@@ -121,9 +121,12 @@ const OWN: &[(&str, Meaning)] = &[
     ("G16 H0", Meaning::MachineCoordinates),
     ("G16", Meaning::WorkOffsetBlock),
     ("G53", Meaning::LengthOff),
-    // The length along X and Y: not the work offsets of others.
+    // The length along X, Y and the axes beyond Z: not the work offsets of others.
     ("G54", Meaning::NotFollowed),
     ("G55", Meaning::NotFollowed),
+    ("G57", Meaning::NotFollowed),
+    ("G58", Meaning::NotFollowed),
+    ("G59", Meaning::NotFollowed),
     ("HA", Meaning::LengthRegister),
     ("HL", Meaning::LengthRegister),
     ("G92", Meaning::SetPosition),

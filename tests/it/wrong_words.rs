@@ -119,6 +119,23 @@ fn what_is_not_followed_is_refused() {
         ("osp-mill", "okuma", Corner, "G55 H1\n", "G55"),
         ("osp-mill", "okuma", Corner, "G54 H1\n", "G54"),
         ("osp-mill", "okuma", Corner, "G57 H1\n", "G57"),
+        ("osp-mill", "okuma", Corner, "G16 H1 G0 Z0.\n", "a work offset for this block alone"),
+        ("osp-mill", "okuma", Corner, "G80\n", "error[spindle]"),
+        ("osp-mill", "okuma", Approach, "G92 X0\n", "G92 says where the part lies"),
+        ("vmc", "mitsubishi", Corner, "G1 X40. ,R5.\n", "rounds a corner here"),
+        ("vmc", "mitsubishi", Corner, "G92 S2000\n", "a limit of 2000"),
+        ("vmc", "siemens", Corner, "LIMS=2000\n", "a limit of 2000"),
+        ("vmc", "siemens", Corner, "X40 Y-29 M5\nS3000 M3\n", "error[spindle]"),
+        ("vmc", "siemens", Corner, "SPOS[1]=0\n", "no field that the program declares"),
+        ("vmc", "siemens", Corner, "FXS[Z]=1\n", "no field that the program declares"),
+        ("vmc", "siemens", Corner, "M70\n", "error[spindle]"),
+        ("vmc", "siemens", Corner, "M1=70\n", "error[spindle]"),
+        ("vmc", "siemens", Corner, "M5\nSETMS(2)\nS3000 M3\n", "spindle 2 becomes the master"),
+        ("vmc", "siemens", Corner, "G961\n", "error[spindle]"),
+        ("vmc", "siemens", Corner, "CYCLE81(50,0,2,-12,,5)\n", "a dwell of 5 s"),
+        ("vmc", "siemens", Corner, "D2\nG0 Z50\nD1\nG1 Z-3\n", "with length register 2"),
+        ("vmc", "fanuc", Corner, "G55\nG0 Z50.\nG54\nG1 Z-3.\n", "goes at rapid in G55"),
+        ("vmc", "fanuc", Corner, "G43 H2\nG0 Z50.\nG43 H1\nG1 Z-3.\n", "with length register 2"),
     ] {
         let run = judged(machine, dialect, ahead, lines);
         assert_eq!(run.code, 1, "{dialect} {lines}: {}{}", run.out, run.err);
@@ -162,10 +179,33 @@ fn what_is_right_stays_so() {
         ("vmc", "heidenhain", Corner, "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+0\n"),
         ("vmc", "fanuc", Corner, "; the corner\n"),
         ("vmc", "fanuc", Corner, "(CORNER);\n"),
+        ("vmc", "siemens", Corner, "DEF REAL A[5]\nA[1]=2\nR[3]=1\n_ZSD[0]=1\n"),
+        ("osp-mill", "okuma", Approach, "G80\nS3000 M3\n"),
         ("vmc", "siemens", Corner, "IF TRUE\nENDIF\nFOR R1=1 TO 3\nENDFOR\n"),
     ] {
         let run = judged(machine, dialect, ahead, lines);
         assert_eq!(run.code, 0, "{dialect} {lines}: {}", run.err);
+    }
+}
+
+/// In a block of a cycle M5 stops the spindle where the tool comes to the hole.
+#[test]
+fn a_hole_is_not_drilled_by_a_spindle_that_stops() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.cls"), PART).unwrap();
+    let own = ["-m", "vmc", "--tool-length", "100"];
+    for dialect in ["fanuc", "mitsubishi", "haas"] {
+        let own = [&own[..], &["--dialect", dialect]].concat();
+        let run = post_in(folder.path(), &[&own[..], &["part.cls", "-o", "part.nc"]].concat());
+        assert_eq!(run.code, 0, "{dialect}: {}", run.err);
+        let right = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        let mut lines: Vec<String> = right.lines().map(str::to_owned).collect();
+        let cycle = lines.iter().position(|line| line.contains("G81")).unwrap();
+        lines[cycle + 1].push_str(" M5");
+        fs::write(folder.path().join("part.nc"), lines.join("\n") + "\n").unwrap();
+        let verify = ["verify", "part.nc", "--against", "part.cls", "--posted"];
+        let run = post_in(folder.path(), &[&verify[..], &own].concat());
+        assert!(run.err.contains("error[spindle]"), "{dialect}: {}", run.err);
     }
 }
 

@@ -35,6 +35,7 @@ impl Unsaid<'_> {
         }
         let mut findings = self.starts();
         findings.extend(self.comes_down());
+        findings.extend(self.unplaced());
         findings.extend(self.cut_off());
         findings.extend(self.modes(finder, machine));
         findings.extend(self.contrary());
@@ -95,6 +96,16 @@ impl Unsaid<'_> {
             "the tool comes down before the program says where {axes} stands: it does so wherever the machine has it then"
         );
         let help = format!("lead {axes} to a position ahead of it");
+        Some(Diagnostic::error("missing", message).help(help).at(self.at(*line)))
+    }
+
+    /// A part that lies where the machine happened to stand.
+    fn unplaced(&self) -> Option<Diagnostic> {
+        let (line, axes) = self.report.unplaced.as_ref().filter(|_| self.own)?;
+        let message = format!(
+            "G92 says where the part lies by where {axes} stands, and the program has not led it there"
+        );
+        let help = format!("lead {axes} to a position ahead of it, or name a work offset");
         Some(Diagnostic::error("missing", message).help(help).at(self.at(*line)))
     }
 

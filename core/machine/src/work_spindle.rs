@@ -27,6 +27,11 @@ fn of(machine: &Machine) -> Option<&Axis> {
     (turns && along && lathe).then_some(spindle)
 }
 
+/// The part turns in a work spindle, beside which the machine has another for its tools.
+pub fn turns_part(machine: &Machine) -> bool {
+    of(machine).is_some()
+}
+
 /// A warning that the part origin sits beside the line of the work spindle.
 pub fn beside(machine: &Machine) -> Option<Diagnostic> {
     let spindle = of(machine)?;

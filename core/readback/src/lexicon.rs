@@ -200,6 +200,12 @@ impl Lexicon {
         self.return_levels
     }
 
+    /// A number without a decimal point may count in the least increment of the control: not on Okuma's, whose unit system
+    /// says what all numbers count in (its cycles alone return to a level that is named).
+    pub(crate) fn counts_by_point(&self) -> bool {
+        self.language == Language::Macro && !self.return_levels
+    }
+
     /// G61 is one of several modes, and not just the name of the only one.
     pub(crate) fn has_path_modes(&self) -> bool {
         self.path_modes

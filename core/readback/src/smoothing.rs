@@ -37,12 +37,7 @@ impl MachineState {
 impl Leeway {
     /// What is to be told of it, where the program keeps within `tolerance` mm and `axis_tolerance` radians and the machine
     /// file smooths by more or less; nothing where that is enough.
-    pub fn beyond(
-        self,
-        machine: &Machine,
-        tolerance: f64,
-        axis_tolerance: f64,
-    ) -> impl Iterator<Item = String> {
+    pub fn beyond(self, machine: &Machine, tolerance: f64, axis_tolerance: f64) -> Option<String> {
         let smoothing = machine.smoothing.largest();
         let most = smoothing.map_or(0.0, |smoothing| smoothing.tolerance).max(tolerance);
         // How far its own rule goes, the machine file says by the tolerances that it has words for.
@@ -64,7 +59,7 @@ impl Leeway {
                 "the control may turn the tool axis off by {far}°, and the tolerance is {most}°"
             )
         });
-        path.into_iter().chain(turn)
+        path.into_iter().chain(turn).reduce(|path, turn| format!("{path}; {turn}"))
     }
 }
 

@@ -29,8 +29,32 @@ pub enum NcTarget {
 #[derive(Debug, Default)]
 pub(super) struct JumpCache {
     marks: HashMap<(NcTarget, JumpDirection, u64), Option<NcMark>>,
+    /// What is known of a target, wherever the jump stands.
+    known: HashMap<NcTarget, TargetPlaces>,
     /// Lines looked at.
     searched: u64,
+}
+
+/// What is known of where a target stands.
+#[derive(Clone, Copy, Debug, Default)]
+struct TargetPlaces {
+    /// A place, and the first that stands from there on.
+    next: Option<(u64, NcMark)>,
+    /// From here on there is none.
+    none_from: Option<u64>,
+    /// The first of the file.
+    first: Option<NcMark>,
+}
+
+impl TargetPlaces {
+    /// The first from `here` on, if that is known: there may be none.
+    fn ahead(&self, here: u64) -> Option<Option<NcMark>> {
+        match (self.next, self.none_from) {
+            (Some((from, mark)), _) if (from..=mark.offset()).contains(&here) => Some(Some(mark)),
+            (_, Some(from)) if here >= from => Some(None),
+            _ => None,
+        }
+    }
 }
 
 impl<R: Read + Seek> NcReader<R> {
@@ -56,6 +80,7 @@ impl<R: Read + Seek> NcReader<R> {
         let found = found?;
         if self.found.marks.len() >= MOST_FOUND {
             self.found.marks.clear();
+            self.found.known.clear();
         }
         self.found.marks.insert(key, found);
         Ok(found)
@@ -72,16 +97,31 @@ impl<R: Read + Seek> NcReader<R> {
         direction: JumpDirection,
         here: NcMark,
     ) -> Result<Option<NcMark>, ReadError> {
-        if direction != JumpDirection::Back
-            && let Some(mark) = self.look_from(here, u64::MAX, target, false)?
-        {
-            return Ok(Some(mark));
+        if direction == JumpDirection::Back {
+            return self.look_from(NcMark::START, here.offset(), target, true);
         }
-        if direction == JumpDirection::Forward {
-            return Ok(None);
+        let mut known = self.found.known.get(target).copied().unwrap_or_default();
+        let ahead = match known.ahead(here.offset()) {
+            Some(ahead) => ahead,
+            None => {
+                let ahead = self.look_from(here, u64::MAX, target, false)?;
+                match ahead {
+                    Some(mark) => known.next = Some((here.offset(), mark)),
+                    None => known.none_from = Some(here.offset()),
+                }
+                ahead
+            }
+        };
+        let mut found = ahead;
+        if ahead.is_none() && direction == JumpDirection::Anywhere {
+            found = match known.first.filter(|first| first.offset() < here.offset()) {
+                Some(first) => Some(first),
+                None => self.look_from(NcMark::START, here.offset(), target, false)?,
+            };
+            known.first = found;
         }
-        let last = direction == JumpDirection::Back;
-        self.look_from(NcMark::START, here.offset(), target, last)
+        self.found.known.insert(target.clone(), known);
+        Ok(found)
     }
 
     /// The first line between two places that `target` means; the last one where `last`.

@@ -174,7 +174,7 @@ const WORDS: &[(&str, Meaning)] = &[
     ("M43", M::Nothing),
     ("M44", M::Nothing),
     ("M45", M::Nothing),
-    ("M70", M::Nothing),
+    ("M70", M::SpindleOrient),
     ("G4", M::Dwell),
     ("G4 F", M::DwellSeconds),
     ("G4 S", M::DwellTurns),

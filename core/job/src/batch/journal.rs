@@ -6,8 +6,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::outcome::{FAILED, JobOutcome};
-use crate::disk::{self, File, OpenOptions};
+use crate::disk::{self, File, MOST_TABLE, OpenOptions};
 use crate::files::FileFault;
+
+fn no_journal() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, "this is no journal of post batch")
+}
 
 /// Outcomes by their keys, on the disk as soon as they are there.
 #[derive(Debug)]
@@ -33,7 +37,17 @@ impl Journal {
                 let mut line = Vec::new();
                 // A whole line that is no outcome shows a file of another kind, unless outcomes stand in it too.
                 let mut other = false;
-                while lines.read_until(b'\n', &mut line).map_err(fault)? > 0 {
+                let mut read = 0;
+                loop {
+                    let piece = &mut (&mut lines).take(MOST_TABLE + 1);
+                    read += piece.read_until(b'\n', &mut line).map_err(fault)? as u64;
+                    if line.is_empty() {
+                        break;
+                    }
+                    // One outcome, or what holds none from its beginning on.
+                    if line.len() as u64 > MOST_TABLE || known.is_empty() && read > MOST_TABLE {
+                        return Err(fault(no_journal()));
+                    }
                     match serde_json::from_slice::<JobOutcome>(&line) {
                         Ok(outcome) if outcome.key.is_some() => {
                             known.extend(outcome.key.clone().map(|key| (key, outcome)));
@@ -43,8 +57,7 @@ impl Journal {
                     line.clear();
                 }
                 if other && known.is_empty() {
-                    let kind = io::ErrorKind::InvalidData;
-                    return Err(fault(io::Error::new(kind, "this is no journal of post batch")));
+                    return Err(fault(no_journal()));
                 }
                 if !resume {
                     known.clear();

@@ -436,7 +436,7 @@ impl<'m> LintWatch<'m> {
             let accuracy = &self.control.machine.accuracy;
             let tolerances = (accuracy.tolerance, accuracy.axis_tolerance);
             let beyond = leeway.beyond(&self.control.machine, tolerances.0, tolerances.1);
-            for message in beyond.collect::<Vec<_>>() {
+            if let Some(message) = beyond {
                 self.tell(Rule::Smoothing, motion.line, message);
             }
         }

@@ -69,6 +69,8 @@ pub struct Trajectory<'a> {
     over: bool,
     /// Set-points are made.
     sampled: bool,
+    /// Waits so far, s.
+    waited: f64,
     /// The run that it is made for, which may end it; none: nobody does.
     session: Option<Session>,
 }
@@ -101,6 +103,7 @@ impl<'a> Trajectory<'a> {
             tells_blocks,
             over: false,
             sampled: true,
+            waited: 0.0,
             session: None,
         }
     }
@@ -135,7 +138,11 @@ impl<'a> Trajectory<'a> {
             Ok(FillOutcome::Full) => {}
             Ok(FillOutcome::Ended) => self.over = true,
             Ok(FillOutcome::TooLong { line, seconds, most }) => {
-                let fault = too_long(self.name, line, [seconds, most]);
+                let takes = match most < MOST_SECONDS {
+                    true => "this block takes",
+                    false => "up to here the program takes",
+                };
+                let fault = too_long(self.name, line, takes, [seconds, most]);
                 news.push(TrajectoryNews::Failed(fault.boxed()));
                 self.over = true;
             }
@@ -187,7 +194,15 @@ impl<'a> Trajectory<'a> {
             };
             let ProgramTask { task, feed, rapid, state } = planned;
             let kind = match (&task, rapid) {
-                (Task::Wait { why, .. }, _) => TaskKind::Wait(*why),
+                (Task::Wait { why, seconds, .. }, _) => {
+                    self.waited += seconds;
+                    if self.sampled && self.waited > MOST_WAITED {
+                        let takes = "the waits up to here take";
+                        let long = [self.waited, MOST_WAITED];
+                        return Err(too_long(self.name, line, takes, long).boxed());
+                    }
+                    TaskKind::Wait(*why)
+                }
                 (Task::Move(_), true) => TaskKind::Rapid,
                 (Task::Move(_), false) => TaskKind::Cut,
             };
@@ -255,6 +270,9 @@ impl TaskReader<'_> {
     }
 }
 
+/// Set-points are made of so many seconds of waits at most: a working day, more than any program waits.
+const MOST_WAITED: f64 = 8.0 * 3600.0;
+
 /// A head was swapped in, or the control goes in polar coordinates: from here on the axes are others.
 fn head(done: &[BlockEffect], name: &str) -> Option<Diagnostic> {
     done.iter().find_map(|done| match done {
@@ -274,10 +292,8 @@ fn head(done: &[BlockEffect], name: &str) -> Option<Diagnostic> {
     })
 }
 
-/// What stands on `line` takes so many seconds, more than set-points are made of at most.
-fn too_long(name: &str, line: u64, [seconds, most]: [f64; 2]) -> Diagnostic {
-    let takes =
-        if most < MOST_SECONDS { "this block takes" } else { "up to here the program takes" };
+/// What ends on `line` takes so many seconds, more than set-points are made of at most.
+fn too_long(name: &str, line: u64, takes: &str, [seconds, most]: [f64; 2]) -> Diagnostic {
     let message =
         format!("{takes} {}, and set-points are made of {} at most", clock(seconds), clock(most));
     let help = "is a decimal point missing, or a feed or a dwell in another unit? a longer period makes fewer set-points; `post lint` tells the time without any";

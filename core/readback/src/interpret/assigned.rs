@@ -40,6 +40,15 @@ pub(super) fn take(
             {
                 return true;
             }
+            NcItem::Assign { variable, .. }
+                if language == Language::Names
+                    && let NcExpression::Indexed { name, .. } = &**variable
+                    && !variables.has_field(name) =>
+            {
+                Err(fault(&format!(
+                    "`{name}[..]=` is no field that the program declares (DEF): what the control does by it is not followed"
+                )))
+            }
             NcItem::Assign { variable, value } => {
                 let name = variables.named(variable);
                 name.and_then(|name| Ok((name, variables.value(value)?)))
@@ -78,7 +87,7 @@ fn declare(kind: &str, items: &[NcItem], variables: &mut Variables) -> FlowResul
             },
             // A field, or a text of so many characters: its elements are set one by one.
             NcItem::Named { name, .. } if kind == "STRING" => variables.define(kind, name, None)?,
-            NcItem::Named { .. } => {}
+            NcItem::Named { name, .. } => variables.define_field(name),
             _ => return Err(fault("what is declared is no name")),
         }
     }

@@ -395,6 +395,9 @@ impl ControlState {
         if let Some(code) = asked.coolant {
             self.coolant(code);
         }
+        if asked.coolant_off && self.stops_ahead(asked) {
+            self.coolant_off();
+        }
         if asked.plane_off {
             planes::end(self)?;
         }

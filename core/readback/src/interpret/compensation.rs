@@ -117,6 +117,10 @@ impl ControlState {
         if asked.length_stated {
             return self.stated_length(words);
         }
+        if asked.length_on && self.modal.tcp_by_length && !asked.tcp_on {
+            let message = "the length comes on while tool centre point control goes by it: one ends the other, or the control stops";
+            return Err(self.refuse("nc-length", message));
+        }
         if asked.length_on || asked.tcp_on && asked.tcp_code.is_some() {
             self.length_by(words)?;
         } else if self.tools.length_on

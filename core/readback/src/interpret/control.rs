@@ -446,6 +446,7 @@ impl ModalState {
             return_level: None,
             smoothing: super::corners::NamedSmoothing::default(),
             master_spindle: 1,
+            spindle_used: None,
             shortest: None,
             orientation: OrientationMode::Usual,
             vectors: false,

@@ -110,6 +110,7 @@ fn preset(control: &mut ControlState, words: &mut BlockWords) -> Result<(), Box<
             "G92 says what {} shows before the program has led it anywhere: the part lies where the machine happens to stand",
             unled.join(", ")
         );
+        control.report.unplaced.get_or_insert((control.line, unled.join(", ")));
         control.note(Diagnostic::warning("nc-frame", message));
     }
     let point = control.point();

@@ -302,9 +302,7 @@ impl ControlState {
         words: &BlockWords,
         letters: u32,
     ) -> Result<(), Box<Diagnostic>> {
-        if self.lexicon.language() == Language::Macro
-            && words.present & letters & words.pointless != 0
-        {
+        if self.lexicon.counts_by_point() && words.present & letters & words.pointless != 0 {
             let message = "axis words without a decimal point are taken in the units of the program: by a parameter of the control they may be its least increments";
             self.note(Diagnostic::warning("nc-number", message));
         }

@@ -84,6 +84,14 @@ impl ControlState {
             Meaning::CycleOff => {
                 self.stand_behind_taps();
                 asked.cycle_off = true;
+                // Where cycles return to a level of their own it stops the spindle too.
+                if self.lexicon.returns_to_levels() && asked.spindle.is_none() {
+                    asked.spindle = Some(SpindleRequest::Off);
+                }
+            }
+            Meaning::WorkOffsetBlock => {
+                let message = "a work offset for this block alone is not followed, and H0 beside it is what counts from the machine's zero";
+                return Err(self.refuse("nc-word", message));
             }
             Meaning::WorkOffsetOff => {
                 let (number, _) = code.unwrap_or_default().parts();
@@ -92,7 +100,7 @@ impl ControlState {
             Meaning::SpeedLimit => {
                 let most = words.take(b'S');
                 words.present &= !bit(b'S');
-                self.limit_speed(most);
+                self.limit_speed(most)?;
             }
             Meaning::Subprogram
             | Meaning::LocalSubprogram
@@ -152,10 +160,10 @@ impl ControlState {
             Meaning::ReturnClearance => self.modal.return_to = ReturnTo::Clearance,
             Meaning::CentreAbsolute => self.modal.centres_absolute = true,
             Meaning::CentreIncremental => self.modal.centres_absolute = false,
-            Meaning::SurfaceSpeed => self.modal.surface_speed = true,
+            Meaning::SurfaceSpeed => self.cut_at_speed(),
             Meaning::SurfaceSpeedOff => self.keep_speed(),
             Meaning::SurfaceSpeedPerRevolution | Meaning::SurfaceSpeedPerMinute => {
-                self.modal.surface_speed = true;
+                self.cut_at_speed();
                 self.feed_mode(match meaning {
                     Meaning::SurfaceSpeedPerMinute => FeedMeaning::PerMinute,
                     _ => FeedMeaning::PerRevolution,
@@ -275,7 +283,6 @@ impl BlockRequest {
             | Meaning::Rotation
             | Meaning::RotationAdded
             | Meaning::RotationOff => self.frame = Some((code.unwrap_or_default(), meaning)),
-            Meaning::WorkOffsetBlock => self.machine = true,
             Meaning::SpindleClockwiseCoolant => {
                 self.spindle = Some(SpindleRequest::Clockwise);
                 self.coolant = Some(8);

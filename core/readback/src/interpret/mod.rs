@@ -105,6 +105,8 @@ pub struct ReadReport {
     /// The line at which the depth is led to a position of the program at rapid first, if these axes were led nowhere
     /// before.
     pub blind: Option<(u64, String)>,
+    /// The line of the first G92 that says what these axes show, if they were led nowhere before.
+    pub unplaced: Option<(u64, String)>,
     /// Line of the first cycle's end that is a word of motion alone.
     pub cycle_cut_off: Option<u64>,
     /// Modes that the program has not set, and the lines of the first words whose meaning hangs on them.

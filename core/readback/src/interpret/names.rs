@@ -2,6 +2,7 @@
 
 use post_grammar::nc::{NcBlock, NcExpression, NcItem, NcValue};
 use post_machine::diagnostic::Diagnostic;
+use post_machine::work_spindle;
 use post_plugin::{Language, Meaning};
 
 use super::assigned::SETTINGS;
@@ -100,7 +101,7 @@ impl ControlState {
         if name == "LIMS" {
             // Another spindle turns nothing that is followed here.
             if number == self.modal.master_spindle {
-                self.limit_speed(Some(value));
+                self.limit_speed(Some(value))?;
             }
             return Ok(());
         }
@@ -154,6 +155,15 @@ impl ControlState {
             let message = format!(
                 "spindle {number} becomes the master while spindle {} turns, and only one of them is followed",
                 self.modal.master_spindle
+            );
+            return Err(self.refuse("nc-word", message));
+        }
+        let other = self.modal.spindle_used.filter(|used| *used != number);
+        if let Some(used) = other
+            && !work_spindle::turns_part(&self.machine)
+        {
+            let message = format!(
+                "spindle {number} becomes the master, and spindle {used} turned the tool before: the machine file has one"
             );
             return Err(self.refuse("nc-word", message));
         }
@@ -225,7 +235,7 @@ impl ControlState {
             }
             WordMeaning::Means(Meaning::SpeedLimit) => {
                 let most = worth(self)?;
-                self.limit_speed(Some(most));
+                self.limit_speed(Some(most))?;
             }
             WordMeaning::Means(Meaning::Nothing) if name == "CTOL" => {
                 let tolerance = worth(self)?;
@@ -238,6 +248,12 @@ impl ControlState {
             WordMeaning::Means(Meaning::Nothing) if name == "OTOL" => {
                 let angle = worth(self)?;
                 self.turn_tolerance(angle);
+            }
+            // `,R1` of a tapping cycle; it rounds a corner elsewhere.
+            WordMeaning::Means(Meaning::Nothing) if name.starts_with(',') && !self.taps(words) => {
+                let message =
+                    format!("{name} is a word of tapping cycles, and rounds a corner here");
+                return Err(self.refuse("nc-word", message));
             }
             WordMeaning::Means(Meaning::Nothing | Meaning::Smoothing) => {}
             WordMeaning::Means(Meaning::SmoothingOff) => self.keeps_corners(None),
@@ -261,6 +277,17 @@ impl ControlState {
             }
         }
         Ok(())
+    }
+
+    /// The block taps, by a word of its own.
+    fn taps(&self, words: &BlockWords) -> bool {
+        let taps = |code: &GCode| {
+            matches!(
+                self.lexicon.g(*code),
+                WordMeaning::Means(Meaning::CycleTap | Meaning::CycleTapLeft)
+            )
+        };
+        words.g.list().iter().any(taps)
     }
 
     /// The value of an axis whose name is longer than a letter.

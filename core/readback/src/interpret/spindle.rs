@@ -50,12 +50,18 @@ impl ControlState {
             self.change_tool(number, name)?;
         }
         match asked.spindle {
-            // It stops when the motion has come to its end; on RS-274/NGC before.
-            Some(SpindleRequest::Off) if self.lexicon.language() != Language::Rs274 => {}
+            Some(SpindleRequest::Off) if !self.stops_ahead(asked) => {}
             Some(turning) => self.turn_spindle(turning),
             None => {}
         }
         Ok(())
+    }
+
+    /// What a block switches off stands still before it moves: on RS-274/NGC and Siemens, and where it drills; else when
+    /// the motion has come to its end, as ISO 6983 has it.
+    pub(super) fn stops_ahead(&self, asked: &BlockRequest) -> bool {
+        let drills = asked.cycle.is_some() || self.cycles.in_force() && !asked.cycle_off;
+        drills || matches!(self.lexicon.language(), Language::Rs274 | Language::Names)
     }
 
     /// S: the spindle's speed from here on, revolutions a minute or of the cut.
@@ -82,11 +88,30 @@ impl ControlState {
     }
 
     /// The largest speed at a constant cutting speed from here on, revolutions a minute; none: any.
-    pub(super) fn limit_speed(&mut self, most: Option<f64>) {
+    ///
+    /// # Errors
+    /// The spindle turns faster at a speed of its own: some controls hold it back then, too (Siemens, Mitsubishi).
+    pub(super) fn limit_speed(&mut self, most: Option<f64>) -> Result<(), Box<Diagnostic>> {
         self.modal.most_speed = most;
-        if matches!(self.state.spindle, SpindleState::Surface { .. }) {
-            self.speed_changed();
+        match (self.state.spindle, most) {
+            (SpindleState::Surface { .. }, _) => self.speed_changed(),
+            (
+                SpindleState::Clockwise(speed) | SpindleState::CounterClockwise(speed),
+                Some(most),
+            ) if speed > most => {
+                let message = format!(
+                    "a limit of {most} while the spindle turns at S{speed}: whether that holds it back hangs on the control"
+                );
+                return Err(self.refuse("nc-word", message));
+            }
+            _ => {}
         }
+        Ok(())
+    }
+
+    /// The cutting speed is kept from here on: S is one, also that which stands.
+    pub(super) fn cut_at_speed(&mut self) {
+        self.modal.kept_speed |= !std::mem::replace(&mut self.modal.surface_speed, true);
     }
 
     /// The cutting speed is kept no more: the spindle turns on as fast as it does where the tool stands, until S says another
@@ -148,6 +173,9 @@ impl ControlState {
             SpindleRequest::Off => SpindleState::Off,
             SpindleRequest::Oriented => SpindleState::Oriented,
         };
+        if !matches!(spindle, SpindleState::Off | SpindleState::Oriented) {
+            self.modal.spindle_used = Some(self.modal.master_spindle);
+        }
         let standstill = &mut self.state.standstill;
         if standstill.spindle.take().is_some() | standstill.change.take().is_some() {
             self.state_changed();

@@ -176,6 +176,8 @@ pub(super) struct ModalState {
     pub smoothing: super::corners::NamedSmoothing,
     /// The spindle that S and M3 speak to, by Siemens' SETMS.
     pub master_spindle: u32,
+    /// The spindle that turned last.
+    pub spindle_used: Option<u32>,
     /// How F counts.
     pub feed_mode: FeedMeaning,
     /// F: mm/min, 1/min (or 1/s as the machine file has it) or mm a revolution; of rotary axes alone deg/min or a

@@ -1,6 +1,6 @@
 //! Variables of a program: what it has set itself is known, everything else stands in the control and is refused.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use post_machine::diagnostic::Diagnostic;
 use post_plugin::Language;
@@ -26,6 +26,8 @@ pub(super) struct Variables {
     local: Vec<BTreeMap<String, VariableValue>>,
     /// Names that `DEF INT` or `DEF BOOL` declared: they hold whole numbers.
     whole: BTreeMap<String, ()>,
+    /// Fields that `DEF` declared.
+    fields: BTreeSet<String>,
 }
 
 impl Variables {
@@ -121,6 +123,17 @@ impl Variables {
             _ => VariableValue::Number(0.0),
         });
         self.set(name, value)
+    }
+
+    /// `DEF REAL A[5]`: a field exists from here on.
+    pub fn define_field(&mut self, name: &str) {
+        self.fields.insert(name.to_owned());
+    }
+
+    /// An element of this field can be set: R of a Siemens, what `DEF` declared, and by the custom of builders' own what
+    /// begins with `_`. What begins with `$` is the control's, and told so.
+    pub fn has_field(&self, name: &str) -> bool {
+        name == "R" || name.starts_with(['_', '$']) || self.fields.contains(name)
     }
 
     /// A subprogram begins, with these variables of its own.

@@ -86,8 +86,12 @@ impl<C: Course> Verifier<'_, C> {
                 if !same {
                     self.look_at_change(line);
                 }
-                let running = &mut self.running;
+                if same && turns(self.running.spindle) {
+                    let message = "a tool change that changes nothing while the spindle turns: where the control orients the spindle for it, it stands behind";
+                    self.left_on(line, "spindle", message.to_owned());
+                }
                 // What stands in the block of the change is on after it.
+                let running = &self.running;
                 if same || running.lines.contains(&line) {
                     return;
                 }

@@ -28,6 +28,7 @@ mod limits;
 mod near;
 mod next_cut;
 mod octree;
+mod offset_use;
 mod place;
 mod quick;
 mod rapid;
@@ -58,6 +59,7 @@ use detour::Detour;
 use hole::{DrilledHole, HoleRun};
 use left_on::RunningFunctions;
 pub use limits::{LimitCheck, PassedLimit};
+use offset_use::OffsetUse;
 use place::{PlaceBound, PlaceDistance, ShareSpan, ToolPlace};
 use quick::QuickStand;
 use report::BlockPlace;
@@ -245,6 +247,8 @@ pub struct Verifier<'m, C> {
     smoothing: Leeway,
     /// The work offsets that were cut in, each by the number that the course asks for.
     worked: Vec<(Option<u32>, String)>,
+    /// Work offsets that the program moves in.
+    offset_use: OffsetUse,
     detour: Detour,
     running: RunningFunctions,
     /// What held and what was asked in the last cut that was compared, if nothing was wrong with it.
@@ -306,6 +310,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             ways_behind: [None; 2],
             begun: Vec::new(),
             worked: Vec::new(),
+            offset_use: OffsetUse::default(),
             turned: Vec::new(),
             moved: false,
             smoothing: Leeway::default(),
@@ -427,6 +432,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             self.look_at_the_rest();
             self.tell_change(None);
             self.tell_end();
+            self.tell_offset_use();
         }
         match self.axes.part_place(self.machine) {
             Some((line, told)) if told.severity == Severity::Error => {
@@ -478,6 +484,7 @@ impl<'m, C: Course> Verifier<'m, C> {
             self.limit_fault("over-travel", key, message, motion, 0, by);
         }
         self.look_for_length(motion);
+        self.offset_use.moves(motion);
         let mut goes_on = false;
         match motion.kind {
             MotionKind::Rapid => {

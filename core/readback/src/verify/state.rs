@@ -12,7 +12,7 @@ use super::report::BlockPlace;
 use super::Verifier;
 use super::track::Element;
 use crate::course::Course;
-use crate::{Coolants, Motion, ProgramEvent, SpindleState};
+use crate::{Coolants, Motion, MotionKind, ProgramEvent, SpindleState};
 
 /// Share of a printed speed or feed that is rounding.
 pub(super) const SHARE: f64 = 0.005;
@@ -188,7 +188,7 @@ impl<C: Course> Verifier<'_, C> {
         }
         self.smoothing = leeway;
         let (tolerance, axis_tolerance) = (self.rules.tolerance, self.rules.axis_tolerance);
-        for message in leeway.beyond(self.machine, tolerance, axis_tolerance) {
+        if let Some(message) = leeway.beyond(self.machine, tolerance, axis_tolerance) {
             self.left_on(motion.line, "smoothing", message);
         }
     }
@@ -294,9 +294,7 @@ impl<C: Course> Verifier<'_, C> {
             let mut known = known.iter();
             known.find(|(number, _)| *number == wanted).map(|(_, length)| *length)
         };
-        let mut registers = self.rules.tool_registers.iter();
-        let register =
-            registers.find(|(number, _)| *number == tool).map_or(tool, |(_, register)| *register);
+        let register = self.register_of(tool);
         let Some(offsets) = &self.rules.lengths else {
             return;
         };
@@ -318,14 +316,8 @@ impl<C: Course> Verifier<'_, C> {
         let Some(tool) = element.asked.tool.or(state.tool) else {
             return;
         };
-        let of_tool = || {
-            let mut known = self.rules.tool_registers.iter();
-            known.find(|(number, _)| *number == tool).map_or(tool, |(_, register)| *register)
-        };
-        let wants = match self.rules.length_from {
-            Lengths::Tools | Lengths::WorkOffset => return,
-            Lengths::Registers => of_tool(),
-            Lengths::Edges => 1,
+        let Some(wants) = self.length_register_of(tool) else {
+            return;
         };
         let message = match state.length_register {
             Some(has) if has == wants => return,
@@ -337,14 +329,29 @@ impl<C: Course> Verifier<'_, C> {
         self.fault("register", message, Some(motion), Some(element.line), None);
     }
 
-    /// Words of the depth mean nothing known before the length of the tool is compensated: the tip is lower than they
-    /// say.
+    /// The register that the length of a tool stands in, where the program names registers.
+    fn length_register_of(&self, tool: u32) -> Option<u32> {
+        match self.rules.length_from {
+            Lengths::Tools | Lengths::WorkOffset => None,
+            Lengths::Registers => Some(self.register_of(tool)),
+            Lengths::Edges => Some(1),
+        }
+    }
+
+    fn register_of(&self, tool: u32) -> u32 {
+        let mut known = self.rules.tool_registers.iter();
+        known.find(|(number, _)| *number == tool).map_or(tool, |(_, register)| *register)
+    }
+
+    /// Words of the depth mean nothing known before the length of the tool is compensated, or by that of another tool: the
+    /// tip is lower than they say.
     pub(super) fn look_for_length(&mut self, motion: &Motion) {
-        if !self.rules.length_from.are_named()
-            || motion.machine
-            || motion.state.length_register.is_some()
-            || motion.state.length_of_spindle
-        {
+        let state = &motion.state;
+        if !self.rules.length_from.are_named() || motion.machine || state.length_of_spindle {
+            return;
+        }
+        let wants = state.tool.and_then(|tool| self.length_register_of(tool));
+        if state.length_register.is_some() && state.length_register == wants {
             return;
         }
         let axes = &self.machine.axes;
@@ -355,7 +362,16 @@ impl<C: Course> Verifier<'_, C> {
         let deeper = |joint: &usize| way(*joint) > SHORT + across && is_depth(self.machine, *joint);
         if let Some(joint) = (0..axes.len()).find(deeper) {
             let name = &self.machine.axes[joint].name;
-            let message = format!("{name} moves without length compensation");
+            let message = match (motion.state.length_register, wants) {
+                (None, _) => format!("{name} moves without length compensation"),
+                // A cut is held against what is asked for there.
+                (Some(has), Some(wants)) if motion.kind == MotionKind::Rapid => {
+                    format!(
+                        "{name} moves at rapid with length register {has}, and that of the tool is {wants}"
+                    )
+                }
+                _ => return,
+            };
             self.fault("register", message, Some(motion), None, None);
         }
     }

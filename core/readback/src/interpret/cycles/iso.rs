@@ -310,7 +310,7 @@ fn to_level(control: &mut ControlState, axis: usize, level: f64) -> Result<(), B
 /// mm in a unit of a length without a point: the least increment, where the control counts so.
 fn least_increment(control: &ControlState, words: &BlockWords, letter: u8) -> f64 {
     let unit = control.modal.unit;
-    let counts = control.lexicon.language() == Language::Macro && words.pointed & bit(letter) == 0;
+    let counts = control.lexicon.counts_by_point() && words.pointed & bit(letter) == 0;
     match counts {
         true if unit == 1.0 => 0.001,
         true => 0.0001 * unit,

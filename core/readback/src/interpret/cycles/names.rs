@@ -118,8 +118,7 @@ fn made(
     around: &CycleContext,
 ) -> Result<CycleHole, Box<Diagnostic>> {
     let hole = match arguments.name {
-        "CYCLE81" => hole,
-        "CYCLE82" => CycleHole { wait: arguments.wait(6), ..hole },
+        "CYCLE81" | "CYCLE82" => CycleHole { wait: arguments.wait(6), ..hole },
         "CYCLE83" => deep(arguments, hole)?,
         "CYCLE84" => {
             let speed = arguments.given(11).filter(|speed| *speed != 0.0).unwrap_or(around.speed);

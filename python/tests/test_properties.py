@@ -56,25 +56,12 @@ DIALECTS = {
 """What each must be told to write anything."""
 NO_TCP = {"okuma", "grbl", "brother"}
 REASONS = re.compile(r"error\[([a-z-]+)\]")
-PLANES = ("G68.2", "G254", "PLANE SPATIAL", "#CS ON")
 KNOWN: dict[str, Callable[[Job, str, str], bool]] = {
-    "a peck of nothing": lambda job, said, text: "DEEP" in job.text() and divided(job) and "hole" in said,
-    "G93 beside a pole": lambda job, said, text: (
-        set(REASONS.findall(said)) == {"feed"} and any(float(one) > 1e5 for one in re.findall(r"F(\d+\.?\d*)", text))
-    ),
-    "a plane where the slides turn": lambda job, said, text: (
-        job.turned
-        and any(word in text for word in PLANES)
-        and bool(set(REASONS.findall(said)) & {"nc-plane", "feed", "register"})
-    ),
     "a rapid beside an earlier cut": lambda job, said, text: (
         set(REASONS.findall(said)) == {"rapid"} and "of what is cut" in said
     ),
-    "slides that lean under TCP": lambda job, said, text: (
-        set(REASONS.findall(said)) <= {"deviation", "added", "missing", "axis-deviation"} and job.leaning
-    ),
-    "slides that lean at the end of travel": lambda job, said, text: (
-        set(REASONS.findall(said)) == {"over-travel"} and job.leaning and "Z would be at 100000." in said
+    "at the end of travel": lambda job, said, text: (
+        set(REASONS.findall(said)) <= {"over-travel", "register"} and "would be at" in said and "100000.0" in said
     ),
 }
 """Faults that are known, by what ``verify`` says of them."""
@@ -99,26 +86,12 @@ def world(rng: np.random.Generator, folder: Path) -> tuple[Machine, Job]:
     choices = [("--reduce",), ("--fit-arcs",), ("--set", "control.planes=false"), ("--set", "control.cycles=moves")]
     choices += [("--set", "control.feed=inverse-time"), ("--set", "control.arcs.keep=false"), ("--tolerance", "0.02")]
     options = tuple(word for choice in choices if rng.random() < 0.15 for word in (*choice, "")[:2])
-    leaning = any(axis.direction.max() < 1 - 1e-12 for axis in machine.axes if not axis.rotary)
-    # A slide that a rotary axis turns: between it and the part, or between it and the tool.
-    sides = [[axis for axis in machine.axes if axis.carries_part]]
-    sides.append([axis for axis in reversed(machine.axes) if not axis.carries_part])
-    turned = any(
-        not one.rotary and any(other.rotary for other in side[place:])
-        for side in sides
-        for place, one in enumerate(side)
-    )
-    return machine, Job(many, bool(rng.random() < 0.2), options, dialect, lengths, leaning, turned)
+    return machine, Job(many, bool(rng.random() < 0.2), options, dialect, lengths)
 
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """The command in that folder."""
     return subprocess.run([COMMAND, *arguments], cwd=folder, capture_output=True, text=True, timeout=120)
-
-
-def divided(job: Job) -> bool:
-    """Whether pecks divide the depth of a hole but for rounding."""
-    return any(one.cycle == "DEEP" and abs(one.pecks * one.peck - one.depth) < 1e-5 for one in job.operations)
 
 
 def flags(job: Job) -> list[str]:

@@ -312,7 +312,9 @@ fn slips_are_told_before_any_work() {
         "{\"file\": \"a.cls\", \"tool_length\": \"long\"}",
         "{\"file\": \"a.cls\", \"set\": {\"Lm\": null}}",
     ]);
-    let cases: [(&[&str], i32, &[&str]); 10] = [
+    let endless = fs::File::create(folder.path().join("endless")).unwrap();
+    endless.set_len(65 << 20).unwrap();
+    let cases: [(&[&str], i32, &[&str]); 11] = [
         (
             &["jobs.jsonl", "-o", "r.csv"],
             1,
@@ -337,6 +339,11 @@ fn slips_are_told_before_any_work() {
             &["a.cls", "-m", "vmc", "-o", "r.csv", "--resume=jobs.jsonl"],
             1,
             &["jobs.jsonl", "this is no journal of post batch"],
+        ),
+        (
+            &["a.cls", "-m", "vmc", "-o", "r.csv", "--resume=endless"],
+            1,
+            &["endless", "this is no journal of post batch"],
         ),
         (
             &["a.cls", "-m", "vmc", "-o", "r.csv", "--set", "Lm=1", "--set", "Lm=2"],

@@ -136,9 +136,7 @@ impl PostingPass<'_> {
         }
         if !beside_text {
             read(session, ClPieces::new(input, None), &mut post)?;
-            let (report, found) = post.finish();
-            told.extend(found);
-            return Ok((report, told));
+            return Ok(finished(post, told));
         }
         let ahead = ReadAhead::default();
         let pieces = ClPieces::new(input, Some(&ahead));
@@ -146,9 +144,7 @@ impl PostingPass<'_> {
         thread::scope(|scope| {
             post.write_beside(scope, &read_some);
             read(session, pieces, &mut post)?;
-            let (report, found) = post.finish();
-            told.extend(found);
-            Ok((report, told))
+            Ok(finished(post, told))
         })
     }
 
@@ -181,6 +177,18 @@ impl PostingPass<'_> {
             Err(finding) => Err((*finding).into()),
         }
     }
+}
+
+/// The end of a pass, behind the findings `told`: a dialect that wrote nothing has made no program.
+fn finished(post: Post<'_>, mut told: Vec<Diagnostic>) -> (Option<PostingReport>, Vec<Diagnostic>) {
+    let (mut report, found) = post.finish();
+    told.extend(found);
+    if let Some(PostingReport { dialect, moves, nc_lines: 0, .. }) = &report {
+        let message = format!("the dialect {dialect} wrote no line of a program of {moves} moves");
+        told.push(Diagnostic::error("plugin", message));
+        report = None;
+    }
+    (report, told)
 }
 
 /// Refuses a machine that posting would refuse before its first record: plugins that cannot be opened, options that they

@@ -484,12 +484,6 @@ impl<'a> Post<'a> {
             self.findings.add(warning);
         }
         let mut report = (!self.findings.failed()).then(|| self.report());
-        if let Some(PostingReport { dialect, moves, nc_lines: 0, .. }) = &report {
-            let message =
-                format!("the dialect {dialect} wrote no line of a program of {moves} moves");
-            self.findings.add(Diagnostic::error("plugin", message));
-            report = None;
-        }
         let found = report.as_ref().and_then(|report| {
             let too_long = |way: &AxisWay<'_>| self.fits_nowhere(way);
             part_anywhere::judge(self.machine, &report.axes, &report.tools, too_long)

@@ -52,16 +52,13 @@ class Operation:
 
 @dataclass(frozen=True)
 class Job:
-    """Operations in their order; ``inch``: the CL file counts in inches; ``leaning``: slides of its machine are not
-    square, ``turned``: rotary axes turn slides."""
+    """Operations in their order; ``inch``: the CL file counts in inches."""
 
     operations: tuple[Operation, ...]
     inch: bool = False
     options: tuple[str, ...] = ()
     dialect: str = "fanuc"
     lengths: dict[int, float] = field(default_factory=dict)
-    leaning: bool = False
-    turned: bool = False
 
     def text(self) -> str:
         """The CL file."""

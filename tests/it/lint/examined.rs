@@ -100,6 +100,24 @@ fn a_block_of_days_is_timed_at_once_and_no_set_points_are_made_of_it() {
     }
 }
 
+/// Each wait is short enough, and all of them are not.
+#[test]
+fn waits_of_hours_one_behind_the_other_are_not_predicted() {
+    let folder = folder(&[(
+        "waits.nc",
+        "G0 X1.0 Y2.0\n#1=0\nWHILE [#1 LT 1000] DO1\n#1=#1+1\nG4 X9000.\nEND1\n",
+    )]);
+    let machine = ["-m", "ac-trunnion", "--tool-length", "100", "--period", "0.1"];
+    let run = post_in(folder.path(), &[&["predict", "waits.nc"], &machine[..]].concat());
+    assert_eq!(run.code, 1, "{}", run.out);
+    let told = [
+        "error[too-long]: the waits up to here take 10 h 00 min",
+        "8 h 00 min at most",
+        "waits.nc:5",
+    ];
+    assert_contains(&run.err, &told);
+}
+
 #[test]
 fn posting_ends_at_once_where_a_block_takes_days() {
     let cl = "PARTNO/A\nUNITS/MM\nLOADTL/1\nSPINDL/8000,RPM,CLW\nFEDRAT/0.1,MMPM\nRAPID\nGOTO/0,0,50,0,0,1\n\

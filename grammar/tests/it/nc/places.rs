@@ -83,6 +83,27 @@ fn numbers_are_found_forwards_backwards_and_around() {
     assert_eq!(line(reader.find(&target(10), JumpDirection::Anywhere).unwrap()), Some(1));
 }
 
+/// A program of a thousand calls is not read a thousand times: neither to a place ahead nor to one behind.
+#[test]
+fn a_place_is_looked_for_once_wherever_it_is_gone_to_from() {
+    let calls = "X1\n".repeat(1000);
+    let text = format!("N7 X0\nN9 X0\n{calls}N8 X2\nN9 X0\n");
+    for (number, expected) in [(8, [1003; 2]), (7, [1; 2]), (9, [1004; 2]), (5, [0; 2])] {
+        let mut reader = reader(&text, &hash());
+        let target = NcTarget::Number(number);
+        next(&mut reader);
+        next(&mut reader);
+        let mut found = Vec::new();
+        for _ in 0..1000 {
+            found.push(line(reader.find(&target, JumpDirection::Anywhere).unwrap()).unwrap_or(0));
+            assert!(reader.next_block(&mut NcBlock::default()).unwrap());
+        }
+        assert_eq!([found[0], found[999]], expected, "N{number}");
+        let most = if number == 5 { 1000 * 1004 } else { 3000 };
+        assert!(reader.lines_searched() < most, "N{number}: {}", reader.lines_searched());
+    }
+}
+
 #[test]
 fn labels_programs_and_subprograms_are_found() {
     let text = "G0 X1\nN5 MARK1: G1\nMARK12: X1\n mark2 :\n;MARK3:\nPROC LAP\nPROC LAP2(INT A)\n";

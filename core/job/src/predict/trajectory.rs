@@ -196,7 +196,8 @@ impl<'a> Trajectory<'a> {
             let kind = match (&task, rapid) {
                 (Task::Wait { why, seconds, .. }, _) => {
                     self.waited += seconds;
-                    if self.sampled && self.waited > MOST_WAITED {
+                    // A wait that is too long by itself is told as such.
+                    if self.sampled && self.waited > MOST_WAITED && *seconds <= MOST_WAITED {
                         let takes = "the waits up to here take";
                         let long = [self.waited, MOST_WAITED];
                         return Err(too_long(self.name, line, takes, long).boxed());

@@ -87,6 +87,14 @@ fn a_plugin_that_ends_the_process_is_named_and_nothing_is_written() {
 }
 
 #[test]
+fn a_plugin_that_opens_all_there_is_to_open_is_told_so() {
+    let (done, folder) = post_with("OPENS_ALL", &["-o", "part.nc"]);
+    let message = "it is open, and cannot be read again: Too many open files";
+    assert!(done.err.contains(message), "{}", done.err);
+    refused("OPENS_ALL", &done, &folder);
+}
+
+#[test]
 fn a_plugin_that_dies_is_named_with_its_event_and_line_and_nothing_is_written() {
     for (fault, message) in [
         (
@@ -179,7 +187,7 @@ fn a_close_that_fails_is_told_once_and_waited_for_once() {
     for (fault, message) in [
         (
             "CLOSE_LOOPS",
-            "it did not return within 3 s and was stopped in the middle of its work (`close` of ",
+            "it did not return within 8 s and was stopped in the middle of its work (`close` of ",
         ),
         (
             "CLOSE_CRASHES",
@@ -187,8 +195,9 @@ fn a_close_that_fails_is_told_once_and_waited_for_once() {
         ),
     ] {
         let begun = std::time::Instant::now();
-        let (done, folder) = post_with(fault, &["-o", "part.nc", "--plugin-seconds", "3"]);
-        assert!(begun.elapsed().as_secs_f64() < 6.0, "{fault}: {:?}", begun.elapsed());
+        let (done, folder) = post_with(fault, &["-o", "part.nc", "--plugin-seconds", "8"]);
+        // Twice is sixteen seconds, whatever else this computer does.
+        assert!(begun.elapsed().as_secs_f64() < 16.0, "{fault}: {:?}", begun.elapsed());
         assert_eq!(done.code, 0, "{}", done.err);
         assert_eq!(
             done.err.matches("warning[plugin]: plugin `hostile` (").count(),
@@ -340,8 +349,8 @@ fn what_a_plugin_leaves_running_does_not_hold_the_command_s_messages_open() {
     let begun = std::time::Instant::now();
     let (done, _) = post_with("LEAVES_A_PRINTER", &["-q", "-o", "part.nc"]);
     assert_eq!(done.code, 0, "{}", done.err);
-    // It prints for ten seconds.
-    assert!(begun.elapsed().as_secs_f64() < 8.0, "{:?}", begun.elapsed());
+    // It prints for a minute.
+    assert!(begun.elapsed().as_secs_f64() < 50.0, "{:?}", begun.elapsed());
 }
 
 #[test]

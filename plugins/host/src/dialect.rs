@@ -255,6 +255,9 @@ fn reason_of(message: String) -> String {
     if message.is_empty() { "it gives no reason".to_owned() } else { message }
 }
 
+/// Most bytes of a line of a program: what reads it back takes no longer one.
+const LONGEST_LINE: usize = 16 * 1024;
+
 /// The text of each event is whole lines that a control can read, and a move's numbers are numbers. What does not
 /// fit is taken back, with all that comes behind it.
 fn check_batch(
@@ -275,7 +278,8 @@ fn check_batch(
     let sound = is_sound(&bytes[base..]);
     let mut from = base;
     for (index, &to) in ends[first..].iter().enumerate() {
-        if !(sound && (to == from || bytes[to - 1] == b'\n'))
+        let short = to - from <= LONGEST_LINE;
+        if !(sound && short && (to == from || bytes[to - 1] == b'\n'))
             && let Err(message) = check_text(&out[from..to], &batch.event(index))
         {
             out.truncate(from);
@@ -317,6 +321,13 @@ fn check_text(text: &str, event: &Event<'_>) -> Result<(), String> {
     };
     for line in lines.split('\n') {
         let inner = line.strip_suffix('\r').unwrap_or(line);
+        if inner.len() > LONGEST_LINE {
+            return Err(format!(
+                "its line `{}` has {} bytes: a line of a program has at most {LONGEST_LINE}",
+                quoted(line),
+                inner.len()
+            ));
+        }
         let odd = |letter: &char| is_odd(*letter) && *letter != '\t';
         if let Some(letter) = inner.chars().find(odd) {
             return Err(format!(

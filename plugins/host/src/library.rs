@@ -66,9 +66,7 @@ pub(crate) fn open_library(name: &str, path: &Path) -> Result<Plugin, Reason> {
         return Err(Reason::NoSymbol { symbol });
     };
     opened().insert(file.path.clone(), file.hash.clone());
-    if !file.is_unchanged() {
-        return Err(system("its file was changed while it was opened".to_owned()));
-    }
+    file.look_again().map_err(system)?;
     if exported.is_null() || !exported.is_aligned() {
         return Err(Reason::NotAPlugin);
     }

@@ -64,8 +64,17 @@ impl LibraryFile {
     /// another folder would not find what a library looks for beside itself (`$ORIGIN`), is barred where such places
     /// are not executable, and is nameless in a debugger. So the file is looked at again once it is open: the hash
     /// that is told is that of the library that was loaded, or the library is refused.
-    pub(crate) fn is_unchanged(&self) -> bool {
-        Self::read(&self.path).is_ok_and(|(again, _)| again == *self)
+    ///
+    /// # Errors
+    /// It is another file, or cannot be read any more: a library may have used up what the system lets a process open.
+    pub(crate) fn look_again(&self) -> Result<(), String> {
+        let again = Self::read(&self.path);
+        let (again, _) =
+            again.map_err(|why| format!("it is open, and cannot be read again: {why}"))?;
+        match again == *self {
+            true => Ok(()),
+            false => Err("its file was changed while it was opened".to_owned()),
+        }
     }
 
     fn read(path: &Path) -> Result<(Self, Vec<u8>), String> {

@@ -38,10 +38,11 @@ pub(crate) fn open(
     limits: Limits,
 ) -> Result<Plugin, Reason> {
     let (process, told) = started(name, &file.path, limits)?;
-    if told.hash != file.hash || !file.is_unchanged() {
-        let message = "its file was changed while it was opened".to_owned();
-        return Err(Reason::Open { message });
-    }
+    let unchanged = match told.hash == file.hash {
+        true => file.look_again(),
+        false => Err("its file was changed while it was opened".to_owned()),
+    };
+    unchanged.map_err(|message| Reason::Open { message })?;
     let version = judge_name("version", &told.version)?.to_owned();
     let about = sentence(&told.about);
     let options = judge_options(told.options.into_iter().map(Ok).collect())?;

@@ -146,6 +146,10 @@ __attribute__((constructor)) static void constructor(void) {
 #ifdef FAULT_DISTURB
     disturb();
 #endif
+#ifdef FAULT_OPENS_ALL
+    while (dup(0) >= 0)
+        ;
+#endif
 #ifdef FAULT_LATE_EXIT
     atexit(ends_it_well);
 #endif
@@ -190,7 +194,7 @@ static void *open_(const PostSetup *setup, const PostSink *error) {
 #ifdef FAULT_LEAVES_A_PRINTER
     if (!fork()) {
         setsid();
-        for (int line = 0; line < 100; line++) {
+        for (int line = 0; line < 600; line++) {
             dprintf(2, "still here\n");
             usleep(100000);
         }
@@ -245,6 +249,16 @@ static size_t write_(void *ctx, const PostEvent *events, size_t n, const PostSin
 #endif
 #ifdef FAULT_CR_CR
     text = "G0 X1\r\r\n";
+#endif
+#ifdef FAULT_LONG_LINE
+    static char line[16386];
+    text = memset(line, ' ', sizeof line - 1);
+    line[sizeof line - 2] = '\n';
+#endif
+#ifdef FAULT_LONGER_LINE
+    static char line[16387];
+    text = memset(line, ' ', sizeof line - 1);
+    line[sizeof line - 2] = '\n';
 #endif
 #ifdef FAULT_CRLF
     text = "G0\tX1\r\n";

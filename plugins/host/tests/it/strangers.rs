@@ -55,6 +55,9 @@ fn no_letter_that_ends_or_hides_a_line_reaches_a_program() {
         let message = format!("dialect `hostile`, event Rapid: {message}: ");
         assert!(fault.message.starts_with(&message), "{}", fault.message);
     }
+    let fault = written(&mut session(folder.path(), "LONGER_LINE")).unwrap_err();
+    assert!(fault.message.ends_with(" has 16385 bytes: a line of a program has at most 16384"));
+    assert_eq!(written(&mut session(folder.path(), "LONG_LINE")).unwrap().len(), 2 * 16385);
     // What controls do read: tabs, and lines that end with CR and LF.
     let text = written(&mut session(folder.path(), "CRLF")).unwrap();
     assert_eq!(text, "G0\tX1\r\nG0\tX1\r\n");

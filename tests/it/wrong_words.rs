@@ -119,10 +119,10 @@ fn what_is_not_followed_is_refused() {
         ("osp-mill", "okuma", Corner, "G55 H1\n", "G55"),
         ("osp-mill", "okuma", Corner, "G54 H1\n", "G54"),
         ("osp-mill", "okuma", Corner, "G57 H1\n", "G57"),
-        ("osp-mill", "okuma", Corner, "G16 H1 G0 Z0.\n", "a work offset for this block alone"),
+        ("osp-mill", "okuma", Corner, "G16 H1 G0 Z0.\n", "G16 is not run"),
         ("osp-mill", "okuma", Corner, "G80\n", "error[spindle]"),
         ("osp-mill", "okuma", Approach, "G92 X0\n", "G92 says where the part lies"),
-        ("vmc", "mitsubishi", Corner, "G1 X40. ,R5.\n", "rounds a corner here"),
+        ("vmc", "mitsubishi", Corner, "G1 X40. ,R5.\n", ",R= is not run"),
         ("vmc", "mitsubishi", Corner, "G92 S2000\n", "a limit of 2000"),
         ("vmc", "siemens", Corner, "LIMS=2000\n", "a limit of 2000"),
         ("vmc", "siemens", Corner, "X40 Y-29 M5\nS3000 M3\n", "error[spindle]"),
@@ -131,6 +131,13 @@ fn what_is_not_followed_is_refused() {
         ("vmc", "siemens", Corner, "M70\n", "error[spindle]"),
         ("vmc", "siemens", Corner, "M1=70\n", "error[spindle]"),
         ("vmc", "siemens", Corner, "M5\nSETMS(2)\nS3000 M3\n", "spindle 2 becomes the master"),
+        (
+            "vmc",
+            "siemens",
+            Corner,
+            "G0 SUPA Z0\nG1\n",
+            "a position of the machine while the tool's length",
+        ),
         ("vmc", "siemens", Corner, "G961\n", "error[spindle]"),
         ("vmc", "siemens", Corner, "CYCLE81(50,0,2,-12,,5)\n", "a dwell of 5 s"),
         ("vmc", "siemens", Corner, "D2\nG0 Z50\nD1\nG1 Z-3\n", "with length register 2"),
@@ -253,4 +260,29 @@ fn a_loop_beside_the_path_is_given_up() {
         "{}",
         run.err
     );
+}
+
+/// Two sides of a box on an index table, which is not let go between them.
+#[test]
+fn an_axis_that_turns_in_its_clamp_is_told() {
+    const SIDES: &str = "UNITS/MM\nLOADTL/1\nSPINDL/3000,CLW\nMULTAX/ON\nFEDRAT/300,MMPM\n\
+        RAPID\nGOTO/0,120,150,0,0,1\nGOTO/0,120,100,0,0,1\nGOTO/20,120,100,0,0,1\nRAPID\nGOTO/20,120,150,0,0,1\n\
+        RAPID\nGOTO/150,120,0,1,0,0\nGOTO/100,120,0,1,0,0\nGOTO/100,120,-20,1,0,0\nRAPID\nGOTO/150,120,-20,1,0,0\nFINI\n";
+    for dialect in ["fanuc", "heidenhain"] {
+        let folder: TempDir = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("part.cls"), SIDES).unwrap();
+        let own = ["-m", "hmc-b-pallet", "--tool-length", "100", "--dialect", dialect];
+        let run = post_in(folder.path(), &[&own[..], &["part.cls", "-o", "part.nc"]].concat());
+        assert_eq!(run.code, 0, "{dialect}: {}", run.err);
+        let verify =
+            [&["verify", "part.nc", "--against", "part.cls", "--posted"][..], &own].concat();
+        let run = post_in(folder.path(), &verify);
+        assert_eq!(run.code, 0, "{dialect}: {}", run.err);
+        let right = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+        let (ahead, behind) = right.split_at(right.rfind("M11").unwrap());
+        fs::write(folder.path().join("part.nc"), format!("{ahead}{}", &behind[3..])).unwrap();
+        let run = post_in(folder.path(), &verify);
+        assert_eq!(run.code, 1, "{dialect}: {}{}", run.out, run.err);
+        assert!(run.err.contains("error[nc-clamp]: B moves"), "{dialect}: {}", run.err);
+    }
 }

@@ -36,6 +36,8 @@ impl Unsaid<'_> {
         let mut findings = self.starts();
         findings.extend(self.comes_down());
         findings.extend(self.unplaced());
+        findings.extend(self.moved_clamped());
+        findings.extend(self.lengthened());
         findings.extend(self.cut_off());
         findings.extend(self.modes(finder, machine));
         findings.extend(self.contrary());
@@ -109,11 +111,27 @@ impl Unsaid<'_> {
         Some(Diagnostic::error("missing", message).help(help).at(self.at(*line)))
     }
 
+    /// An axis that moves in its clamp.
+    fn moved_clamped(&self) -> Option<Diagnostic> {
+        let (line, axis) = self.report.moved_clamped.as_ref()?;
+        let message = format!("{axis} moves, and is clamped by a word of the machine file");
+        let help = format!("let {axis} go ahead of it");
+        Some(self.graded("nc-clamp", message).help(help).at(self.at(*line)))
+    }
+
+    /// A position of the machine that the tool's length may shift.
+    fn lengthened(&self) -> Option<Diagnostic> {
+        let line = self.report.lengthened?;
+        let message = "a position of the machine while the tool's length is in force: whether it counts there is for the control's builder to say".to_owned();
+        let help = "write D0 in the block or ahead of it";
+        Some(self.graded("nc-machine", message).help(help).at(self.at(line)))
+    }
+
     /// A cycle that no word of its own ends.
     fn cut_off(&self) -> Option<Diagnostic> {
         let line = self.report.cycle_cut_off.filter(|_| self.own)?;
         let mut words = self.spoken.words.iter();
-        let off = words.find(|word| word.meaning == Meaning::CycleOff)?;
+        let off = words.find(|word| ModalGroup::of(word.meaning) == Some(ModalGroup::Cycle))?;
         let message = format!(
             "a word of motion alone ends the cycle here, {} does not: where the control lets it go on, the next position is drilled",
             off.word

@@ -54,6 +54,8 @@ pub struct Lexicon {
     senses: Vec<WordMeaning>,
     letters: [Option<Meaning>; 26],
     names: BTreeMap<String, WordMeaning>,
+    /// Names that mean this beside a code alone.
+    names_beside: Vec<(GCode, String, Meaning)>,
     /// Names that mean this where nothing stands between their parentheses.
     empty: BTreeMap<String, Meaning>,
     choices: Vec<CodeChoice>,
@@ -70,6 +72,8 @@ pub struct Lexicon {
     modes: u16,
     /// A cycle returns to a level that the program names.
     return_levels: bool,
+    /// The word that ends cycles stops the spindle too, and a rapid ends them as well.
+    rapids_end_cycles: bool,
     /// A constant cutting speed is a kind of the feed, and every other kind ends it.
     speed_goes_with_feed: bool,
 }
@@ -86,11 +90,13 @@ impl Lexicon {
             syntax: syntax(words, language, writes),
             all_axes: words.iter().any(|word| word.meaning == Meaning::FeedPerMinuteAllAxes),
             return_levels: words.iter().any(|word| word.meaning == Meaning::ReturnLevel),
+            rapids_end_cycles: words.iter().any(|word| word.meaning == Meaning::CycleOffSpindleOff),
             speed_goes_with_feed: language == Language::Names,
             path_modes: words.iter().any(|word| word.word == "G64"),
             changes_by_word: words.iter().any(|word| word.meaning == Meaning::ToolChange),
             letters: [None; 26],
             names: BTreeMap::new(),
+            names_beside: Vec::new(),
             empty: BTreeMap::new(),
             choices: Vec::new(),
             axis_words: Vec::new(),
@@ -150,6 +156,11 @@ impl Lexicon {
         !matches!(self.language, Language::Names | Language::Rs274)
     }
 
+    /// Whether positions of the machine are without the tool's length is for the builder to say: MD 10760 of Siemens.
+    pub(crate) fn machine_lengths_vary(&self) -> bool {
+        self.language == Language::Names
+    }
+
     /// Where the control has the length of the tool from.
     pub fn lengths(&self) -> Lengths {
         self.writes.lengths()
@@ -200,10 +211,14 @@ impl Lexicon {
         self.return_levels
     }
 
-    /// A number without a decimal point may count in the least increment of the control: not on Okuma's, whose unit system
-    /// says what all numbers count in (its cycles alone return to a level that is named).
+    /// A rapid ends a cycle as well as the word for that, which stops the spindle.
+    pub(crate) fn rapids_end_cycles(&self) -> bool {
+        self.rapids_end_cycles
+    }
+
+    /// A number without a decimal point may count in the least increment of the control.
     pub(crate) fn counts_by_point(&self) -> bool {
-        self.language == Language::Macro && !self.return_levels
+        self.language == Language::Macro && !self.writes.has(Capabilities::UNIT_SYSTEM)
     }
 
     /// G61 is one of several modes, and not just the name of the only one.
@@ -305,6 +320,13 @@ impl Lexicon {
         self.names.get(name).copied().unwrap_or(WordMeaning::Unknown)
     }
 
+    /// What a name means in a block with these codes.
+    pub(crate) fn name_beside(&self, name: &str, codes: &[GCode]) -> WordMeaning {
+        let mut beside = self.names_beside.iter();
+        let found = beside.find(|(code, known, _)| known == name && codes.contains(code));
+        found.map_or_else(|| self.name(name), |(_, _, meaning)| WordMeaning::Means(*meaning))
+    }
+
     /// A name that means this, the first of the alphabet.
     pub(crate) fn name_of(&self, meaning: Meaning) -> Option<&str> {
         let mut names = self.names.iter();
@@ -344,6 +366,13 @@ impl Lexicon {
     fn add_sense(&mut self, word: &str, sense: WordMeaning) {
         let mut parts = word.split_whitespace();
         let first = parts.next().unwrap_or_default();
+        let second = word.get(first.len()..).unwrap_or_default().trim_start();
+        if let (Some(VocabularyCode::G(code)), true, WordMeaning::Means(meaning)) =
+            (VocabularyCode::of(first), second.starts_with(','), sense)
+        {
+            self.names_beside.push((code, second.to_owned(), meaning));
+            return;
+        }
         let Some(code) = VocabularyCode::of(first) else {
             // `MCALL CYCLE81` is known by the name of its cycle.
             let name = word.strip_prefix("MCALL ").unwrap_or(word);

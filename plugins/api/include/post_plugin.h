@@ -436,6 +436,8 @@ typedef struct {
  * and what stands in front of a command or behind it is not run as words of a block. The dialect names every
  * word that its control reads: what others of its language have in common does not hold. */
 #define POST_WRITES_COMMAND_A_LINE 0x0040000000000000u
+/* A parameter of the control says what its numbers count in, and a decimal point does not override it. */
+#define POST_WRITES_UNIT_SYSTEM 0x0080000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

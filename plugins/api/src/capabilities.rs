@@ -162,6 +162,8 @@ capabilities! {
     /// stands in front of a command or behind it is not run as words of a block. The dialect names every word that its
     /// control reads: what others of its language have in common does not hold.
     54 COMMAND_A_LINE;
+    /// A parameter of the control says what its numbers count in, and a decimal point does not override it.
+    55 UNIT_SYSTEM;
 }
 
 impl Capabilities {

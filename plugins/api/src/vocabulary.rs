@@ -9,7 +9,7 @@ use crate::field::{Codes, codes};
 pub struct VocabularyWord {
     /// The word as the control reads it, without the number that goes with it: `G43.4`, `TRAORI`, `CYCL DEF 32`, `F`. A
     /// name stands without `=` and parentheses, `CYCLE800()` says that nothing stands between them; `G4 P` is P beside
-    /// G4.
+    /// G4, and `G84 ,R` is `,R` beside G84.
     pub word: Cow<'static, str>,
     /// What it means.
     pub meaning: Meaning,
@@ -232,6 +232,8 @@ codes! {
         CycleOff = 89 "CYCLE_OFF",
         /// A cycle returns to the level where it began: G98.
         ReturnStart = 90 "RETURN_START",
+        /// No cycle any more, and the spindle stands: G80 of Okuma. There a rapid ends a cycle too.
+        CycleOffSpindleOff = 218 "CYCLE_OFF_SPINDLE_OFF",
         /// A cycle returns to where the feed begins: G99.
         ReturnClearance = 91 "RETURN_CLEARANCE",
         /// A way to the reference position, over the point that the block names: G28.

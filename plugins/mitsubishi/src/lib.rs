@@ -94,7 +94,9 @@ const OWN: &[(&str, Meaning)] = &[
     ("G84", Meaning::CycleTap),
     ("G74", Meaning::CycleTapLeft),
     ("M29", Meaning::Nothing),
-    (",R", Meaning::Nothing),
+    // Of a rigid tap; it rounds a corner elsewhere.
+    ("G84 ,R", Meaning::Nothing),
+    ("G74 ,R", Meaning::Nothing),
     ("G76", Meaning::CycleBoreFine),
     ("G87", Meaning::CycleBoreBack),
     ("G12", Meaning::CycleOther),

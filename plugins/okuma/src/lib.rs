@@ -62,9 +62,10 @@ impl Control for Okuma {
     /// G16 H0 counts from a zero of the builder's own, which is the top of Z on hardly any machine.
     fn capabilities(&self) -> Capabilities {
         // In what unit P waits, posts do not agree.
+        let always = Capabilities::CYCLE_NO_DWELL | Capabilities::UNIT_SYSTEM;
         match self.retracts {
-            true => Capabilities::CYCLE_NO_DWELL,
-            false => Capabilities::CYCLE_NO_DWELL | Capabilities::RETRACT_SAID,
+            true => always,
+            false => always | Capabilities::RETRACT_SAID,
         }
     }
 }
@@ -152,6 +153,7 @@ const OWN: &[(&str, Meaning)] = &[
     ("M54", Meaning::ReturnClearance),
     // Goes there and makes no hole.
     ("NCYL", Meaning::CycleOther),
+    ("G80", Meaning::CycleOffSpindleOff),
     ("G73", Meaning::CycleBreakChip),
     ("G74", Meaning::CycleTapLeft),
     ("G274", Meaning::CycleTapLeft),

@@ -87,7 +87,7 @@ fn declare(kind: &str, items: &[NcItem], variables: &mut Variables) -> FlowResul
             },
             // A field, or a text of so many characters: its elements are set one by one.
             NcItem::Named { name, .. } if kind == "STRING" => variables.define(kind, name, None)?,
-            NcItem::Named { name, .. } => variables.define_field(name),
+            NcItem::Named { name, .. } => variables.define_field(name)?,
             _ => return Err(fault("what is declared is no name")),
         }
     }

@@ -255,8 +255,7 @@ impl ControlState {
         self.modal.motion = mode;
         self.stand_behind_taps();
         if self.cycles.in_force() {
-            // Where cycles return to a level of their own G80 stops the spindle too, and a rapid is how they end.
-            self.cycles.cut_off = !self.lexicon.returns_to_levels();
+            self.cycles.cut_off = !self.lexicon.rapids_end_cycles();
             cycles::end(self);
         }
     }
@@ -317,6 +316,7 @@ impl ControlState {
         self.modal.rigid_taps |= code == 29
             && self.lexicon.language() == Language::Macro
             && self.lexicon.m(code) == WordMeaning::Means(Meaning::Nothing);
+        let clamps = self.clamps.take(&self.machine, code);
         match self.lexicon.m(code) {
             WordMeaning::Means(Meaning::ToolChange) if code == 0 => {
                 asked.change_or_stop = true;
@@ -334,19 +334,12 @@ impl ControlState {
                 format!("M{code} is not run: it may change what the words behind it mean"),
             )),
             _ => {
-                if !self.swap_head(code)? && !self.clamps(code) {
+                if !self.swap_head(code)? && !clamps {
                     self.unknown(&format!("M{code}"));
                 }
                 Ok(())
             }
         }
-    }
-
-    /// The word clamps an axis of the machine, or lets it go.
-    fn clamps(&self, code: u16) -> bool {
-        let own = |word: &str| m_number(word) == Some(code);
-        let clamps = self.machine.axes.iter().filter_map(|axis| axis.clamp.as_ref());
-        clamps.into_iter().any(|clamp| own(&clamp.on) || own(&clamp.off))
     }
 
     /// The word swaps a head in.
@@ -723,7 +716,7 @@ impl ControlState {
 }
 
 /// `12` of `M12`; none for any other word.
-fn m_number(word: &str) -> Option<u16> {
+pub(super) fn m_number(word: &str) -> Option<u16> {
     let number = word.trim().strip_prefix(['M', 'm'])?;
     number.parse().ok()
 }

@@ -138,6 +138,7 @@ impl ControlState {
             tools: super::tools::ToolState::default(),
             variables: super::variables::Variables::new(lexicon.language()),
             cycles: super::cycles::CycleState::default(),
+            clamps: super::clamps::ClampState::default(),
             spline: None,
             joint_variable: super::statements::JointVariable::default(),
             robot_frames: super::robot_frames::RobotFrames::default(),

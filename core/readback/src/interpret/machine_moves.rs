@@ -74,6 +74,13 @@ impl ControlState {
             }
         }
         self.uncouple(&mut joints, stated);
+        let letter = [b'X', b'Y', b'Z'][self.modal.plane.coordinates()[2]];
+        if self.lexicon.machine_lengths_vary()
+            && self.state.length_register.is_some()
+            && stated & self.axes.places_of(bit(letter)) != 0
+        {
+            self.report.lengthened.get_or_insert(self.line);
+        }
         self.go_machine(kind, &joints, stated)
     }
 

@@ -81,17 +81,12 @@ impl ControlState {
                 }
                 asked.cycle = Some((code, meaning));
             }
-            Meaning::CycleOff => {
+            Meaning::CycleOff | Meaning::CycleOffSpindleOff => {
                 self.stand_behind_taps();
                 asked.cycle_off = true;
-                // Where cycles return to a level of their own it stops the spindle too.
-                if self.lexicon.returns_to_levels() && asked.spindle.is_none() {
-                    asked.spindle = Some(SpindleRequest::Off);
+                if meaning == Meaning::CycleOffSpindleOff {
+                    asked.spindle.get_or_insert(SpindleRequest::Off);
                 }
-            }
-            Meaning::WorkOffsetBlock => {
-                let message = "a work offset for this block alone is not followed, and H0 beside it is what counts from the machine's zero";
-                return Err(self.refuse("nc-word", message));
             }
             Meaning::WorkOffsetOff => {
                 let (number, _) = code.unwrap_or_default().parts();
@@ -114,6 +109,10 @@ impl ControlState {
             Meaning::ReturnLevel if code.is_some() => self.return_level(words)?,
             Meaning::ReturnLevel => self.modal.return_to = ReturnTo::Level,
             Meaning::Spline => self.spline_word(code)?,
+            Meaning::WorkOffsetBlock => {
+                let help = "H0 beside it is what counts from the machine's zero";
+                return Err(self.not_followed(code).help(help).boxed());
+            }
             _ if is_not_followed(meaning) => return Err(self.not_followed(code)),
             // Letters, remarks and what does nothing.
             _ => {}

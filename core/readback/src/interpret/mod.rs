@@ -7,6 +7,7 @@
 //! | `block_words` | the words of a block, by letter |
 //! | `block`, `meanings` | a block of words: modes first, then what moves |
 //! | `compensation`, `spindle` | lengths, radii, work offsets; tools, spindle, coolant, waits |
+//! | `clamps` | axes that are clamped, and move |
 //! | `corners` | how the control passes from one motion to the next |
 //! | `names` | names, calls and texts among the words |
 //! | `run` | plain blocks that are run together |
@@ -26,6 +27,7 @@ mod astray;
 mod block;
 mod block_words;
 mod calls;
+mod clamps;
 mod compensation;
 mod control;
 mod conversational;
@@ -107,6 +109,11 @@ pub struct ReadReport {
     pub blind: Option<(u64, String)>,
     /// The line of the first G92 that says what these axes show, if they were led nowhere before.
     pub unplaced: Option<(u64, String)>,
+    /// The first line that moves an axis which is clamped, and the axis.
+    pub moved_clamped: Option<(u64, String)>,
+    /// The first line that leads the depth to a position of the machine while a length is in force, where the control's
+    /// builder says whether it counts there.
+    pub lengthened: Option<u64>,
     /// Line of the first cycle's end that is a word of motion alone.
     pub cycle_cut_off: Option<u64>,
     /// Modes that the program has not set, and the lines of the first words whose meaning hangs on them.
@@ -156,13 +163,18 @@ impl Runner {
         if block.skipped {
             self.control.say_skipped();
         }
+        let before = self.control.at.joints;
         match self.notation {
             Notation::Words => block::run(&mut self.control, block, &mut self.words),
             Notation::Conversational => {
                 conversational::run(&mut self.control, block, &mut self.words)
             }
             Notation::Statements => statements::run(&mut self.control, block),
+        }?;
+        if !self.control.clamps.are_off() {
+            self.control.end_clamped_block(&before);
         }
+        Ok(())
     }
 }
 

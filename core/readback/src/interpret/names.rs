@@ -221,7 +221,7 @@ impl ControlState {
             let number = worth(self)?;
             return self.use_work_offset(&format!("{offset}={number}"));
         }
-        match self.lexicon.name(name) {
+        match self.lexicon.name_beside(name, words.g.list()) {
             WordMeaning::Means(Meaning::ToolAxisX) => part(0)?,
             WordMeaning::Means(Meaning::ToolAxisY) => part(1)?,
             WordMeaning::Means(Meaning::ToolAxisZ) => part(2)?,
@@ -249,12 +249,6 @@ impl ControlState {
                 let angle = worth(self)?;
                 self.turn_tolerance(angle);
             }
-            // `,R1` of a tapping cycle; it rounds a corner elsewhere.
-            WordMeaning::Means(Meaning::Nothing) if name.starts_with(',') && !self.taps(words) => {
-                let message =
-                    format!("{name} is a word of tapping cycles, and rounds a corner here");
-                return Err(self.refuse("nc-word", message));
-            }
             WordMeaning::Means(Meaning::Nothing | Meaning::Smoothing) => {}
             WordMeaning::Means(Meaning::SmoothingOff) => self.keeps_corners(None),
             WordMeaning::Means(Meaning::SpindleOrient) => {
@@ -277,17 +271,6 @@ impl ControlState {
             }
         }
         Ok(())
-    }
-
-    /// The block taps, by a word of its own.
-    fn taps(&self, words: &BlockWords) -> bool {
-        let taps = |code: &GCode| {
-            matches!(
-                self.lexicon.g(*code),
-                WordMeaning::Means(Meaning::CycleTap | Meaning::CycleTapLeft)
-            )
-        };
-        words.g.list().iter().any(taps)
     }
 
     /// The value of an axis whose name is longer than a letter.

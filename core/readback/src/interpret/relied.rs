@@ -79,7 +79,7 @@ impl ModalGroup {
             | Meaning::FixedSpeedPerRevolution
             | Meaning::FixedSpeedPerMinute => Self::Feed,
             Meaning::CompensationOff => Self::Compensation,
-            Meaning::CycleOff => Self::Cycle,
+            Meaning::CycleOff | Meaning::CycleOffSpindleOff => Self::Cycle,
             Meaning::TiltedPlaneOff => Self::TiltedPlane,
             Meaning::Diameter | Meaning::DiameterOfPositions | Meaning::DiameterOff => {
                 Self::Diameter

@@ -69,7 +69,8 @@ impl ControlState {
             && !modal.incremental
             && !modal.vectors
             && self.spline.is_none()
-            && self.cycles.are_off();
+            && self.cycles.are_off()
+            && self.clamps.are_off();
         let plain = straight
             && self.fed
             && self.has_begun()

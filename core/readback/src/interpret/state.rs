@@ -58,6 +58,8 @@ pub(super) struct ControlState {
     pub variables: Variables,
     /// The cycle that is in force, if there is one.
     pub cycles: CycleState,
+    /// The axes that are clamped.
+    pub clamps: super::clamps::ClampState,
     /// What its words are in polar interpolation of the control; none where the machine has none.
     pub face_words: Option<super::face::FaceWords>,
     /// The polar interpolation in force.

@@ -91,14 +91,7 @@ impl Variables {
             _ => &mut self.global,
         };
         if map.len() >= MOST && !map.contains_key(name) {
-            return Err(Diagnostic::error(
-                "nc-variable",
-                format!(
-                    "`{name}` would be the variable number {}: no more than {MOST} are kept",
-                    MOST + 1
-                ),
-            )
-            .boxed());
+            return Err(too_many(name));
         }
         map.insert(name.to_owned(), value);
         Ok(())
@@ -126,8 +119,15 @@ impl Variables {
     }
 
     /// `DEF REAL A[5]`: a field exists from here on.
-    pub fn define_field(&mut self, name: &str) {
+    ///
+    /// # Errors
+    /// There are too many.
+    pub fn define_field(&mut self, name: &str) -> Result<(), Box<Diagnostic>> {
+        if self.fields.len() >= MOST && !self.fields.contains(name) {
+            return Err(too_many(name));
+        }
         self.fields.insert(name.to_owned());
+        Ok(())
     }
 
     /// An element of this field can be set: R of a Siemens, what `DEF` declared, and by the custom of builders' own what
@@ -250,6 +250,13 @@ const RS274_OWN: &[&str] = &[
 /// The number of `#12`.
 fn hash(name: &str) -> Option<u32> {
     name.strip_prefix('#')?.parse().ok()
+}
+
+fn too_many(name: &str) -> Box<Diagnostic> {
+    let number = MOST + 1;
+    let message =
+        format!("`{name}` would be the variable number {number}: no more than {MOST} are kept");
+    Diagnostic::error("nc-variable", message).boxed()
 }
 
 fn unknown(name: &str, held_by_control: bool) -> Box<Diagnostic> {

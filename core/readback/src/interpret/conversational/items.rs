@@ -80,6 +80,11 @@ impl<'b> BlockItems<'b> {
         value.map(|value| worth(control, value)).transpose()
     }
 
+    /// Reads values after longer names that change nothing of what is followed.
+    pub(super) fn pass_named(&self, control: &ControlState, names: &[&str]) -> Answer<()> {
+        names.iter().try_for_each(|name| self.named(control, name).map(drop))
+    }
+
     /// The next name that has not been read.
     pub(super) fn next_name(&self) -> Option<&'b str> {
         self.first(self.left(), |item| match item {

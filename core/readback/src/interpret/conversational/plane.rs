@@ -21,9 +21,7 @@ pub(super) fn plane(
 ) -> Answer<()> {
     // How rotary axes that turn without the tool count, and how far the tip is from where they turn about.
     said.pass(&["COORD ROT", "TABLE ROT"]);
-    for name in ["DIST", "ABST"] {
-        let _ = said.named(control, name)?;
-    }
+    said.pass_named(control, &["DIST", "ABST"])?;
     if !control.frames.inner.is_default() {
         return Err(control
             .refuse("nc-plane", "a shift or turn inside of the tilted plane must end before it"));
@@ -175,9 +173,7 @@ pub(super) fn cycle_19(
     words: &mut BlockWords,
 ) -> Answer<()> {
     said.pass(&["FMAX"]);
-    for name in ["DIST", "ABST"] {
-        let _ = said.named(control, name)?;
-    }
+    said.pass_named(control, &["DIST", "ABST"])?;
     planes::end(control)?;
     let angles = [b'A', b'B', b'C'].map(|letter| words.take(letter).unwrap_or(0.0).to_radians());
     words.used |= bit(b'F');

@@ -138,6 +138,15 @@ fn what_is_not_followed_is_refused() {
             "G0 SUPA Z0\nG1\n",
             "a position of the machine while the tool's length",
         ),
+        ("vmc", "siemens", Corner, "G18\n", "the plane is another than when the tool's length"),
+        ("vmc", "fagor", Corner, "G18\n", "the plane is another than when the tool's length"),
+        ("vmc", "isg", Corner, "G19\n", "the plane is another than when the tool's length"),
+        ("vmc", "siemens", Corner, "TRAORI(2)\n", "this is data set 2 of the control"),
+        ("vmc", "siemens", Corner, "TRAORI(1,0,1,0)\n", "the direction of the tool in its"),
+        ("vmc", "siemens", Corner, "TRAFOOF\n", "a transformation has begun or ended"),
+        ("vmc", "isg", Corner, "#KIN ID [3]\n", "which kinematics of the control"),
+        ("vmc", "siemens", Corner, "CYCLE86(50,0,2,-12)\n", "which way the spindle turns (SDIR)"),
+        ("osp-mill", "okuma", Corner, "M16\n", "is not run"),
         ("vmc", "siemens", Corner, "G961\n", "error[spindle]"),
         ("vmc", "siemens", Corner, "CYCLE81(50,0,2,-12,,5)\n", "a dwell of 5 s"),
         ("vmc", "siemens", Corner, "D2\nG0 Z50\nD1\nG1 Z-3\n", "with length register 2"),
@@ -285,4 +294,44 @@ fn an_axis_that_turns_in_its_clamp_is_told() {
         assert_eq!(run.code, 1, "{dialect}: {}{}", run.out, run.err);
         assert!(run.err.contains("error[nc-clamp]: B moves"), "{dialect}: {}", run.err);
     }
+}
+
+/// CYCLE86 ends each hole with the spindle oriented: what cuts behind it has it turn again.
+#[test]
+fn boring_leaves_the_spindle_oriented() {
+    const BORED: &str = "UNITS/MM\nLOADTL/1\nSPINDL/800,CLW\nRAPID\nGOTO/0,0,20\n\
+        CYCLE/BORE,DRAG,FEDTO,-12,MMPM,100,RAPTO,5\nGOTO/10,10,0\nGOTO/20,10,0\nCYCLE/OFF\n\
+        FEDRAT/200,MMPM\nGOTO/30,0,5\nGOTO/30,0,-1\nGOTO/40,0,-1\nRAPID\nGOTO/40,0,20\nFINI\n";
+    let folder: TempDir = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.cls"), BORED).unwrap();
+    let own = ["-m", "vmc", "--tool-length", "100", "--dialect", "siemens"];
+    let run = post_in(folder.path(), &[&own[..], &["part.cls", "-o", "part.nc"]].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let verify = [&["verify", "part.nc", "--against", "part.cls", "--posted"][..], &own].concat();
+    let run = post_in(folder.path(), &verify);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let right = fs::read_to_string(folder.path().join("part.nc")).unwrap();
+    let (ahead, behind) = right.split_at(right.rfind("M3\n").unwrap());
+    assert!(ahead.contains("MCALL CYCLE86"), "{right}");
+    fs::write(folder.path().join("part.nc"), format!("{ahead}{}", &behind[2..])).unwrap();
+    let run = post_in(folder.path(), &verify);
+    assert_eq!(run.code, 1, "{}{}", run.out, run.err);
+    assert!(run.err.contains("error[spindle]"), "{}", run.err);
+}
+
+/// With the tool upright the table's axis is free: it stays where it stands, and does not go to zero.
+#[test]
+fn a_free_axis_of_the_table_stays_in_a_plane() {
+    const TURNED: &str = "UNITS/MM\nMULTAX/ON\nLOADTL/1\nSPINDL/3000,CLW\nRAPID\n\
+        GOTO/10,10,60,0,-0.5,0.8660254\nFEDRAT/300,MMPM\nGOTO/10,10,10\nGOTO/10,30,10\nRAPID\nGOTO/10,10,60\n\
+        RAPID\nGOTO/10,10,60,0,0,1\nGOTO/10,10,10\nGOTO/10,30,10\n\
+        CYCLE/DRILL,FEDTO,-5,MMPM,100,RAPTO,2\nGOTO/10,10,10\nGOTO/20,20,10\nCYCLE/OFF\nFINI\n";
+    let folder: TempDir = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.cls"), TURNED).unwrap();
+    let own = ["-m", "dmu50", "--tool-length", "100", "part.cls", "-o", "part.h", "--verify"];
+    let run = post_in(folder.path(), &own);
+    assert_eq!(run.code, 0, "{}", run.err);
+    let program = fs::read_to_string(folder.path().join("part.h")).unwrap();
+    assert!(program.contains("SPA+0 SPB+0 SPC-90 TURN FMAX TABLE ROT"), "{program}");
+    assert!(program.contains("SPA+0 SPB+30 SPC-90 TURN FMAX\n"), "{program}");
 }

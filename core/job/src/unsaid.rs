@@ -37,6 +37,8 @@ impl Unsaid<'_> {
         findings.extend(self.comes_down());
         findings.extend(self.unplaced());
         findings.extend(self.moved_clamped());
+        findings.extend(self.frame_dropped());
+        findings.extend(self.length_across());
         findings.extend(self.lengthened());
         findings.extend(self.cut_off());
         findings.extend(self.modes(finder, machine));
@@ -117,6 +119,22 @@ impl Unsaid<'_> {
         let message = format!("{axis} moves, and is clamped by a word of the machine file");
         let help = format!("let {axis} go ahead of it");
         Some(self.graded("nc-clamp", message).help(help).at(self.at(*line)))
+    }
+
+    /// A work offset that a transformation may have ended.
+    fn frame_dropped(&self) -> Option<Diagnostic> {
+        let line = self.report.frame_dropped?;
+        let message = "a transformation has begun or ended, which may end the work offset (MD 10602), and no word names it again".to_owned();
+        let help = "name the work offset behind TRAORI and TRAFOOF";
+        Some(self.graded("nc-frame", message).help(help).at(self.at(line)))
+    }
+
+    /// A plane across which the tool does not lie.
+    fn length_across(&self) -> Option<Diagnostic> {
+        let line = self.report.length_across?;
+        let message = "the plane is another than when the tool's length was put on, and the control lays the length along the axis across it".to_owned();
+        let help = "name the plane of the tool again; `arcs_off_xy` of the dialect says that the control keeps the length where it is";
+        Some(self.graded("nc-length", message).help(help).at(self.at(line)))
     }
 
     /// A position of the machine that the tool's length may shift.

@@ -156,6 +156,16 @@ impl Lexicon {
         !matches!(self.language, Language::Names | Language::Rs274)
     }
 
+    /// Where a transformation begins or ends, the work offset may end too: MD 10602 of Siemens says so.
+    pub(crate) fn transformations_drop_frames(&self) -> bool {
+        self.language == Language::Names
+    }
+
+    /// The tool's length goes along the axis across the plane in force, whichever was when it was put on.
+    pub(crate) fn lengths_go_across(&self) -> bool {
+        self.writes.has(Capabilities::LENGTH_ACROSS_PLANE)
+    }
+
     /// Whether positions of the machine are without the tool's length is for the builder to say: MD 10760 of Siemens.
     pub(crate) fn machine_lengths_vary(&self) -> bool {
         self.language == Language::Names
@@ -325,6 +335,16 @@ impl Lexicon {
         let mut beside = self.names_beside.iter();
         let found = beside.find(|(code, known, _)| known == name && codes.contains(code));
         found.map_or_else(|| self.name(name), |(_, _, meaning)| WordMeaning::Means(*meaning))
+    }
+
+    /// The number of a call that the dialect names with one: 2 of `TRAORI(2)`, 91 of `#KIN ID [91]`.
+    pub(crate) fn number_of_call(&self, name: &str) -> Option<f64> {
+        let number = |known: &String| {
+            let behind = known.strip_prefix(name)?.trim_start();
+            let inside = behind.strip_prefix(['(', '['])?.strip_suffix([')', ']'])?;
+            inside.trim().parse().ok()
+        };
+        self.names.keys().find_map(number)
     }
 
     /// A name that means this, the first of the alphabet.

@@ -438,6 +438,9 @@ typedef struct {
 #define POST_WRITES_COMMAND_A_LINE 0x0040000000000000u
 /* A parameter of the control says what its numbers count in, and a decimal point does not override it. */
 #define POST_WRITES_UNIT_SYSTEM 0x0080000000000000u
+/* The tool's length goes along the axis across the plane in force, also where the plane changes behind the word
+ * that put it on: along Y behind G18. */
+#define POST_WRITES_LENGTH_ACROSS_PLANE 0x0100000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

@@ -164,6 +164,9 @@ capabilities! {
     54 COMMAND_A_LINE;
     /// A parameter of the control says what its numbers count in, and a decimal point does not override it.
     55 UNIT_SYSTEM;
+    /// The tool's length goes along the axis across the plane in force, also where the plane changes behind the word that
+    /// put it on: along Y behind G18.
+    56 LENGTH_ACROSS_PLANE;
 }
 
 impl Capabilities {

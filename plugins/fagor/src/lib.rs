@@ -41,7 +41,7 @@ impl Control for Fagor {
             at_start: false,
         },
         // D stands in the block of the tool.
-        length: Length { on: "", register: "D", by_itself: true, off: "" },
+        length: Length { on: "", register: "D", by_itself: true, across_plane: true, off: "" },
         relies: RELIES,
         tcp: Tcp::Blocks { on: RTCP, off: "#RTCP OFF", length_first: true },
         machine: "#MCS G0",
@@ -139,6 +139,11 @@ const OPTIONS: &[OptionSpec] = iso_options![
         "Line that switches it off; empty: #RTCP OFF under tcp = \"control\" and behind planes, else nothing is written \
          about it.",
     ),
+    OptionSpec::flag(
+        "arcs_off_xy",
+        false,
+        "Arcs in G18 and G19: the machine parameter LCOMPTYP must keep the length along Z.",
+    ),
     options::cycles_in_plane(true),
     options::tapping("rigid"),
     OptionSpec::text("coolant_mist", "", "M codes of mist."),
@@ -149,6 +154,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
 const RELIES: &[&str] = &[
     "G0 is interpolated: all axes go together, on a straight line",
     "corners are kept: the machine parameter that G5, G7 and G50 take the place of says G7",
+    "LCOMPTYP keeps the length along Z where arcs are written in G18 or G19",
     "under #RTCP and #CS coordinates stay with the part",
     "rotary axes count whole turns: they are not of the module type",
     "positions of #MCS are those of the axes, without offsets and length",

@@ -23,7 +23,7 @@ pub(crate) const A: Table = Table {
     feed_all_axes: true,
     sign_is_way: true,
     // T puts the offsets of the tool in force.
-    length: Length { on: "", register: "", by_itself: true, off: "" },
+    length: Length { on: "", register: "", by_itself: true, across_plane: false, off: "" },
     leave: &[Leave::Retract],
     change: "",
     // They go along Z or X by their codes, and R counts from where they begin.

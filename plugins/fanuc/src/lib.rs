@@ -120,10 +120,12 @@ const OPTIONS: &[OptionSpec] = iso_options![
 
 /// Numbers of parameters are those of the 30i, 31i, 32i (B-63950EN, B-64490EN).
 const RELIES: &[&str] = &[
-    "1008#0 ROA, #1 RAB: a rotary word is where the axis stands, whole turns counted; roll-over off",
+    "1008#0 ROA = 0: whole turns count; ROA = 1, #1 RAB = 0 for an axis with a range",
+    "1403#5 HTG = 1: F of a helix is along the helix, not along its circle",
     "1401#1 LRP = 1: rapids go straight; with 0 the axes arrive one after the other",
     "5006#6 TOS: either; G53 has taken the length off before G49 cancels it",
-    "19696#5 WKP = 0: under G43.4 coordinates stay with the table",
+    "19696#5 WKP = 0: under G43.4 coordinates stay with the table, as at its zero",
+    "19696#6 RFC = 1: under G43.4 F holds where the tip stands and the axes turn",
     "one M code a block is enough, G53 counts from the machine's zero",
 ];
 

@@ -82,7 +82,12 @@ impl Heidenhain {
         self.block.word("PLANE SPATIAL");
         self.block.number("SPA", a, 4, style).number("SPB", b, 4, style);
         self.block.number("SPC", c, 4, style);
-        self.block.line(&self.datum.positioning, out);
+        // An axis that the tool leaves free would else go to zero, and the coordinates turn in its place.
+        let upright = a == 0.0 && b == 0.0 && c != 0.0;
+        match upright && !self.datum.positioning.contains(" ROT") {
+            true => self.block.line(&format!("{} TABLE ROT", self.datum.positioning), out),
+            false => self.block.line(&self.datum.positioning, out),
+        };
         self.tilted = true;
     }
 

@@ -42,7 +42,7 @@ impl Control for Isg {
             word: work_offset,
             at_start: false,
         },
-        length: Length { on: "D", register: "", by_itself: false, off: "" },
+        length: Length { on: "D", register: "", by_itself: false, across_plane: true, off: "" },
         relies: RELIES,
         tcp: Tcp::Blocks { on: TRAFO, off: "#TRAFO OFF", length_first: true },
         machine: "#MCS ON",
@@ -52,6 +52,8 @@ impl Control for Isg {
         // G80 to G89 are subprograms of the builder's.
         cycles: &[],
         cycles_in_plane: true,
+        // P-CHAN-00439 = 0.
+        smoothing_in_mm: true,
         plane: Plane::Turns {
             on: "{tcp_on}\n#CS ON [{x}, {y}, {z}, {third}, {second}, {first}]",
             off: "#CS OFF\n{tcp_off}",
@@ -152,6 +154,11 @@ const OPTIONS: &[OptionSpec] = iso_options![
         false,
         "F counts inches under G70: must be said for an inch program."
     ),
+    OptionSpec::flag(
+        "arcs_off_xy",
+        false,
+        "Arcs in G18 and G19: P-CHAN-00420 must keep the length along Z, or a line of your own with #TLAX [Z+].",
+    ),
     options::cycles_in_plane(true),
     options::smoothing(""),
     options::smoothing_off(""),
@@ -159,8 +166,11 @@ const OPTIONS: &[OptionSpec] = iso_options![
 
 const RELIES: &[&str] = &[
     "P-CHAN-00108 feedrate_factor = 100: F counts mm a minute",
+    "P-CHAN-00011, P-CHAN-00096: F counts along X, Y and Z",
+    "P-CHAN-00439 = 0: tolerances of smoothing are in mm in an inch program too",
     "P-CHAN-00014 einrechnen_mit_t = 0: T alone does not change the length",
     "P-CHAN-00394 rotation_sequence = ZYX: angles of #CS",
+    "P-CHAN-00420 or #TLAX [Z+] where arcs are written in G18 or G19: the length stays along Z",
     "#MCS, #CS and #TRAFO are parts of the option Transformations",
     "under #TRAFO and #CS coordinates stay with the part",
     "rotary axes count whole turns: they are no modulo axes",

@@ -33,6 +33,8 @@ pub struct Engine {
     /// Decimals of the tool vector's words; none: rotary words are written.
     vector: Option<u8>,
     splines: bool,
+    /// Arcs in G18 and G19 leave the tool's length where it is.
+    arcs_off_xy: bool,
     /// The program's title, with its number.
     title: String,
     machine: String,
@@ -100,11 +102,13 @@ impl Engine {
             writes |= Capabilities::WORD_LETTER;
         }
         if !table.codes.arc[0].is_empty() {
-            writes |= Capabilities::ARC_XY
-                | Capabilities::ARC_ZX
-                | Capabilities::ARC_YZ
-                | Capabilities::HELIX
-                | Capabilities::ARC_RADIUS;
+            writes |= Capabilities::ARC_XY | Capabilities::HELIX | Capabilities::ARC_RADIUS;
+            if self.arcs_off_xy {
+                writes |= Capabilities::ARC_ZX | Capabilities::ARC_YZ;
+            }
+        }
+        if !self.arcs_off_xy {
+            writes |= Capabilities::LENGTH_ACROSS_PLANE;
         }
         if self.splines && table.splines != crate::SplineForm::None {
             writes |= Capabilities::SPLINE;
@@ -169,6 +173,9 @@ impl Engine {
                 let found = own.find(|line| !other.lines().any(|known| known == *line));
                 found.unwrap_or("").to_owned()
             };
+            for kinematics in self.tcp_on.lines().filter(|line| line.starts_with("#KIN ID")) {
+                add(kinematics, Meaning::Nothing);
+            }
             add(&last(&self.tcp_on, &self.tcp_off), Meaning::TcpOn);
             add(&last(&self.tcp_off, &self.tcp_on), Meaning::TcpOff);
         }
@@ -435,6 +442,11 @@ impl Engine {
             self.forget();
             self.safe(out);
         }
+    }
+
+    /// The control may have ended the work offset: it is named again ahead of the next position.
+    pub fn offset_may_be_off(&mut self) {
+        self.offset_active.forget();
     }
 
     fn offset_in_force(&mut self, out: &mut String) {

@@ -170,7 +170,7 @@ impl Engine {
         let table = self.table;
         match *event {
             Event::Smoothing { tolerance, .. } if !self.settings.levels.is_empty() => {
-                let words = self.settings.level(tolerance, self.inch)?;
+                let words = self.settings.level(tolerance, self.inch && !table.smoothing_in_mm)?;
                 if self.settings.smoothing.as_ref() != Some(&words) {
                     self.smooth(words, out);
                 }

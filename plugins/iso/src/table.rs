@@ -100,6 +100,8 @@ pub struct Table {
     pub smoothing: [&'static str; 2],
     /// Smoothing may change while the length is in force.
     pub smoothing_anywhere: bool,
+    /// Its tolerance is in mm in an inch program too.
+    pub smoothing_in_mm: bool,
     /// Constant cutting speed.
     pub surface: Option<SurfaceSpeed>,
     /// Opens a remark that the control shows to the operator: `MSG, `; empty where it has none.
@@ -172,6 +174,9 @@ pub struct Length {
     /// The control knows the length without a register. Option `length_register` gives one to a program that loads
     /// no tool.
     pub by_itself: bool,
+    /// It goes along the axis across the plane in force, along Y behind G18: arcs stand in G17 alone, unless the option
+    /// `arcs_off_xy` says that it stays where it is.
+    pub across_plane: bool,
     /// Cancels it.
     pub off: &'static str,
 }
@@ -479,7 +484,13 @@ impl Table {
             word: |number| offset_of_six(number),
             at_start: false,
         },
-        length: Length { on: "G43", register: "H", by_itself: false, off: "G49" },
+        length: Length {
+            on: "G43",
+            register: "H",
+            by_itself: false,
+            across_plane: false,
+            off: "G49",
+        },
         tcp: Tcp::None,
         tcp_at_rapid: false,
         machine: "G53 G0",
@@ -504,6 +515,7 @@ impl Table {
         splines: SplineForm::None,
         smoothing: ["", ""],
         smoothing_anywhere: false,
+        smoothing_in_mm: false,
         surface: None,
         message: "",
         units_inside: false,

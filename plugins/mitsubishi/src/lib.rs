@@ -63,7 +63,6 @@ const OPTIONS: &[OptionSpec] = iso_options![
     options::TOOL_VECTOR,
     options::cycles_in_plane(false),
     options::TAPPING_NAMED,
-    options::BORE_SHIFT,
     options::smoothing(""),
     options::smoothing_off(""),
 ];
@@ -71,7 +70,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
 const RELIES: &[&str] = &[
     "frame, work offsets, H, D, cycles and subprograms are written as Fanuc has them: confirm at the machine",
     "7915, 1247, 8901 to 8906, 1450: tool centre point control and inclined surface are set up",
-    "under G43.4 coordinates stay with the table",
+    "under G43.4 coordinates stay with the table, as at its zero",
     "taps: M29 S ahead of G84 makes them synchronous; without it 8159 decides, F is a feed a minute either way",
     "cycles, G41 and G42 stand neither under G43.4 nor on an inclined surface, unless an option says so",
 ];

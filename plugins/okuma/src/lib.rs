@@ -177,8 +177,9 @@ const OWN: &[(&str, Meaning)] = &[
     ("M11", Meaning::Unclamp),
     ("M21", Meaning::Unclamp),
     ("M27", Meaning::Unclamp),
-    ("M15", Meaning::Nothing),
-    ("M16", Meaning::Nothing),
+    // The way in which a rotary axis turns.
+    ("M15", Meaning::NotFollowed),
+    ("M16", Meaning::NotFollowed),
     ("M510", Meaning::Nothing),
     ("M511", Meaning::Nothing),
     ("RTS", Meaning::SubprogramEnd),

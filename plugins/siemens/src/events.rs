@@ -18,6 +18,9 @@ impl Siemens {
         if !matches!(event, Event::CyclePoint { .. } | Event::Comment { .. }) {
             self.end_call(engine, out);
         }
+        if self.oriented && cuts(event) {
+            self.turn_again(engine, out);
+        }
         self.motion_event(event, engine, out)
     }
 
@@ -73,6 +76,7 @@ impl Siemens {
                 engine.motion.settle(out);
                 if self.rotary && self.tcp_active.set(false) {
                     engine.line(&self.tcp_off, out);
+                    engine.offset_may_be_off();
                 }
                 return Ok(false);
             }
@@ -108,6 +112,7 @@ impl Siemens {
                 }
             }
             Event::Spindle(spindle) => {
+                self.oriented = false;
                 self.turning = match spindle {
                     Spindle::On { rpm, sense } => Some((rpm, sense)),
                     Spindle::Off | Spindle::Orient => None,
@@ -178,6 +183,7 @@ impl Siemens {
                 let line = if on { &self.tcp_on } else { &self.tcp_off };
                 engine.line(line, out);
                 self.tcp_active.set(on);
+                engine.offset_may_be_off();
                 engine.motion.axes.forget();
             }
             Event::Subprogram { number, name, .. } => {
@@ -203,4 +209,16 @@ impl Siemens {
         }
         Ok(true)
     }
+}
+
+/// The spindle turns in it, or stands ahead of it that does.
+fn cuts(event: &Event<'_>) -> bool {
+    matches!(
+        event,
+        Event::Linear { .. }
+            | Event::Arc { .. }
+            | Event::Spline { .. }
+            | Event::Position { .. }
+            | Event::Cycle { .. }
+    )
 }

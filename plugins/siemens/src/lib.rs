@@ -59,6 +59,8 @@ struct Siemens {
     /// Vector of the tool, in units of its last decimal.
     vector: Modal<[f64; 3]>,
     turning: Option<SpindleTurning>,
+    /// Boring has left the spindle oriented.
+    oriented: bool,
     /// D0 is not in force.
     length: Modal<bool>,
     drilling: Option<Drilling>,
@@ -126,6 +128,7 @@ impl Control for Siemens {
             tilted: false,
             vector: Modal::default(),
             turning: None,
+            oriented: false,
             length: Modal::default(),
             drilling: None,
             called: None,

@@ -1,7 +1,7 @@
 //! Moves that need more than axis words: first positions, tool vectors, arcs, holes.
 
-use post_iso::Engine;
-use post_plugin::{Event, Feed, Group, NumberStyle, ToolPose};
+use post_iso::{Control, Engine};
+use post_plugin::{Event, Feed, Group, NumberStyle, SpindleSense, ToolPose};
 
 use crate::Siemens;
 
@@ -219,8 +219,20 @@ impl Siemens {
 
     /// Ends the modal call: any block that moves, or says how, would drill.
     pub(crate) fn end_call(&mut self, engine: &mut Engine, out: &mut String) {
-        if self.called.take().is_some() {
+        if let Some(called) = self.called.take() {
             engine.line("MCALL", out);
+            self.oriented |= called.starts_with("MCALL CYCLE86");
+        }
+    }
+
+    /// The spindle, which boring has left oriented (CYCLE86), turns again.
+    pub(crate) fn turn_again(&mut self, engine: &mut Engine, out: &mut String) {
+        self.oriented = false;
+        let [clockwise, counter, ..] = Self::TABLE.spindle;
+        match self.turning {
+            Some((_, SpindleSense::Clockwise)) => engine.line(clockwise, out),
+            Some((_, SpindleSense::CounterClockwise)) => engine.line(counter, out),
+            None => {}
         }
     }
 }

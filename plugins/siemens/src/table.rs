@@ -35,7 +35,7 @@ pub(crate) const TABLE: Table = Table {
         },
         at_start: false,
     },
-    length: Length { on: "", register: "D", by_itself: true, off: "" },
+    length: Length { on: "", register: "D", by_itself: true, across_plane: true, off: "" },
     tcp: Tcp::Blocks { on: "TRAORI", off: "TRAFOOF", length_first: true },
     // SUPA leaves the length in force (MD $MN_G53_TOOLCORR = 0), so D0 goes with it.
     machine: "G0 SUPA D0",

@@ -577,6 +577,9 @@ impl ControlState {
         self.begins();
         self.relies_on_nothing_left();
         self.relies_on_turning_plane();
+        if std::mem::take(&mut self.modal.frame_dropped) {
+            self.report.frame_dropped.get_or_insert(self.line);
+        }
         if kind == MotionKind::Feed {
             self.relies_on(ModalGroup::Feed);
         } else if words.present & bit(b'F') != 0 {

@@ -95,6 +95,7 @@ impl ControlState {
             if self.lexicon.names_lengths_by_d() {
                 self.tools.by_tool = false;
                 self.tools.length_on = register != 0;
+                self.tools.across = self.modal.plane;
                 self.state.length_register = (register != 0).then_some(register);
                 self.length_changed()?;
             }
@@ -205,6 +206,7 @@ impl ControlState {
 
     /// The work offset of this name from here on.
     pub(super) fn use_work_offset(&mut self, name: &str) -> Result<(), Box<Diagnostic>> {
+        self.modal.frame_dropped = false;
         if self.state.work_offset.as_deref() == Some(name) {
             return Ok(());
         }

@@ -456,6 +456,7 @@ impl ModalState {
             rigid_taps: false,
             machine: false,
             tapped: false,
+            frame_dropped: false,
             ways_are_radii: false,
         }
     }

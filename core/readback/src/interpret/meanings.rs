@@ -30,8 +30,10 @@ impl ControlState {
                     None => self.begin_wrap(None, 1.0, "its word"),
                 };
             }
+            Meaning::TcpOn => self.modal.frame_dropped = self.lexicon.transformations_drop_frames(),
             // One word ends all transformations of some controls.
             Meaning::TcpOff => {
+                self.modal.frame_dropped = self.lexicon.transformations_drop_frames();
                 self.end_face()?;
                 self.end_wrap()?;
             }

@@ -111,6 +111,11 @@ pub struct ReadReport {
     pub unplaced: Option<(u64, String)>,
     /// The first line that moves an axis which is clamped, and the axis.
     pub moved_clamped: Option<(u64, String)>,
+    /// The first motion behind a transformation that may have ended the work offset, if no word has named it since.
+    pub frame_dropped: Option<u64>,
+    /// The first motion in another plane than that in which the tool's length was put on, where the control lays it along
+    /// the axis across the plane.
+    pub length_across: Option<u64>,
     /// The first line that leads the depth to a position of the machine while a length is in force, where the control's
     /// builder says whether it counts there.
     pub lengthened: Option<u64>,

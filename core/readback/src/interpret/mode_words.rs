@@ -43,6 +43,14 @@ fn data_set(line: &str) -> Option<f64> {
     value?.parse().ok()
 }
 
+/// Why a data set is not the one that the machine file names; the first, if it names none.
+fn unlike(number: f64, known: Option<f64>) -> Option<String> {
+    let known = known.unwrap_or(1.0);
+    (number != known).then(|| {
+        format!("this is data set {number} of the control, and the machine file tells of data set {known} alone")
+    })
+}
+
 impl ControlState {
     /// Why no mode can begin here.
     pub(super) fn holds_off_modes(&self) -> Option<String> {
@@ -63,10 +71,27 @@ impl ControlState {
     /// Why the data set of that number is not the one of `on`, the lines that begin the mode in the machine file: `TRANSMIT(2)`,
     /// `TRACYL(50, 2)`, the first without a number.
     pub(super) fn other_data_set(&self, number: f64, on: &[String]) -> Option<String> {
-        let known = on.iter().find_map(|line| data_set(line)).unwrap_or(1.0);
-        (number != known).then(|| {
-            format!("this is data set {number} of the control, and the machine file tells of data set {known} alone")
-        })
+        unlike(number, on.iter().find_map(|line| data_set(line)))
+    }
+
+    /// Refuses tool centre point control by another data set than the one that `tcp_on` of the machine file names, the
+    /// first without a number, and with another direction of the tool: `TRAORI(2)`, `TRAORI(1,0,1,0)`.
+    pub(super) fn is_own_transformation(
+        &self,
+        name: &str,
+        values: &[Option<f64>],
+    ) -> Result<(), Box<Diagnostic>> {
+        let number = values.first().copied().flatten().unwrap_or(1.0);
+        let lack = unlike(number, self.lexicon.number_of_call(name));
+        let turned = values
+            .iter()
+            .skip(1)
+            .any(Option::is_some)
+            .then(|| "the direction of the tool in its parentheses is not followed".to_owned());
+        match lack.or(turned) {
+            Some(lack) => Err(self.refuse("nc-mode", format!("{name} begins, and {lack}"))),
+            None => Ok(()),
+        }
     }
 
     /// Refuses a move in a frame that was turned since the mode of that name began.

@@ -329,7 +329,12 @@ impl ControlState {
             return Ok(());
         }
         match self.lexicon.name(name) {
-            WordMeaning::Means(meaning) => self.meant(None, meaning, words, asked),
+            WordMeaning::Means(meaning) => {
+                if meaning == Meaning::TcpOn {
+                    self.is_own_transformation(name, &[])?;
+                }
+                self.meant(None, meaning, words, asked)
+            }
             // A name alone may be that of a subprogram.
             WordMeaning::Unknown if self.lexicon.language() == Language::Names => {
                 Err(self.placed(*super::astray::elsewhere(name)).boxed())
@@ -345,6 +350,28 @@ impl ControlState {
                 Err(self.refuse("nc-word", message))
             }
         }
+    }
+
+    /// Refuses other kinematics than those that `tcp_on` of the machine file names: `#KIN ID [91]`.
+    fn is_own_kinematics(&self, arguments: &[Option<NcValue>]) -> Result<(), Box<Diagnostic>> {
+        let number = match arguments.first() {
+            Some(Some(NcValue::Text(text))) => text.trim().parse().ok(),
+            _ => self.argument(arguments, 0)?,
+        };
+        let known = self.lexicon.number_of_call("#KIN ID");
+        if number.is_some() && number == known {
+            return Ok(());
+        }
+        let message = match known {
+            Some(known) => format!(
+                "these are not kinematics {known} of the control, of which the machine file tells"
+            ),
+            None => {
+                "which kinematics of the control the machine file tells of is not said".to_owned()
+            }
+        };
+        let help = "the lines of `tcp_on` name it: [\"#KIN ID [1]\", …]";
+        Err(self.placed(Diagnostic::error("nc-mode", message).help(help)).boxed())
     }
 
     /// The value of the argument at a place of a call, if something stands there.
@@ -376,6 +403,7 @@ impl ControlState {
                     self.tell(ProgramEvent::Message(text));
                 }
             }
+            ("#KIN ID", _) => self.is_own_kinematics(arguments)?,
             (_, WordMeaning::Means(Meaning::TiltedPlane)) => {
                 return planes::call(self, name, arguments);
             }
@@ -405,7 +433,10 @@ impl ControlState {
                     ),
                     _ => None,
                 };
-                let tolerance = tolerance.map(|tolerance| tolerance * self.modal.unit);
+                // ISG's is in mm in an inch program too.
+                let in_mm = matches!(arguments.first(), Some(Some(NcValue::Text(words))) if words.contains("PATH_DEV"));
+                let unit = if in_mm { 1.0 } else { self.modal.unit };
+                let tolerance = tolerance.map(|tolerance| tolerance * unit);
                 if self.lexicon.language() == Language::Names {
                     let turn = self.turn_of_cycle(arguments)?;
                     self.smoothing_cycle(tolerance, turn);
@@ -432,7 +463,15 @@ impl ControlState {
             }
             (_, WordMeaning::Means(Meaning::Nothing)) => {}
             _ if self.master_spindle(name, arguments)? => {}
-            (_, WordMeaning::Means(meaning)) => return self.meant(None, meaning, words, asked),
+            (_, WordMeaning::Means(meaning)) => {
+                if meaning == Meaning::TcpOn && self.lexicon.language() == Language::Names {
+                    let values: Vec<Option<f64>> = (0..arguments.len())
+                        .map(|place| self.argument(arguments, place))
+                        .collect::<Result<_, _>>()?;
+                    self.is_own_transformation(name, &values)?;
+                }
+                return self.meant(None, meaning, words, asked);
+            }
             _ => {
                 let message = format!(
                     "{name}(…) is no cycle or subprogram that is known here, and might move the machine"

@@ -175,11 +175,21 @@ impl ControlState {
         }
     }
 
+    /// The plane has changed since the length was put on, and the control lays it along another axis with that.
+    pub(super) fn length_goes_elsewhere(&self) -> bool {
+        self.modal.plane != self.tools.across
+            && self.tools.length_on
+            && self.lexicon.lengths_go_across()
+    }
+
     /// The lengths of a turning tool act in X and Z under G18, and in Y and X under G17 (SINUMERIK ONE, NC programming,
     /// 6FC5398-2EP40-0BA0, 12/2019, p. 750).
     #[inline]
     pub(super) fn relies_on_turning_plane(&mut self) {
         if !self.lengths_by_plane {
+            if self.length_goes_elsewhere() {
+                self.report.length_across.get_or_insert(self.line);
+            }
             return;
         }
         if self.modal.unset & ModalGroup::Plane.bit() != 0 {

@@ -70,7 +70,8 @@ impl ControlState {
             && !modal.vectors
             && self.spline.is_none()
             && self.cycles.are_off()
-            && self.clamps.are_off();
+            && self.clamps.are_off()
+            && !self.length_goes_elsewhere();
         let plain = straight
             && self.fed
             && self.has_begun()

@@ -217,6 +217,8 @@ pub(super) struct ModalState {
     pub ways_are_radii: bool,
     /// A rigid tap was made and no word has turned the spindle since: it stands when the cycle is over.
     pub tapped: bool,
+    /// A transformation has begun or ended, which may have ended the work offset, and no word has named it since.
+    pub frame_dropped: bool,
 }
 
 /// Where a cycle returns to.

@@ -60,6 +60,7 @@ impl Engine {
             plane: PlaneWords::new(table, setup, rotary as u8),
             vector: (!table.vector.is_empty() && flag(setup, "tool_vector", false)).then_some(6),
             splines: flag(setup, "splines", false),
+            arcs_off_xy: flag(setup, "arcs_off_xy", !table.length.across_plane),
             title: title(table, setup),
             tool_blocks,
             restart: flag(setup, "restart", false),

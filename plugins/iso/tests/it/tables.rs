@@ -66,7 +66,7 @@ struct Instructed;
 
 impl Control for Instructed {
     const TABLE: &'static Table = &Table {
-        length: Length { on: "D", register: "", by_itself: false, off: "" },
+        length: Length { on: "D", register: "", by_itself: false, across_plane: false, off: "" },
         tcp: Tcp::Blocks { on: "#TRAFO ON", off: "#TRAFO OFF", length_first: true },
         machine: "#MCS ON",
         machine_off: "#MCS OFF",

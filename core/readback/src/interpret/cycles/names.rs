@@ -151,7 +151,12 @@ fn made(
         },
         "CYCLE86" => {
             let lift = [8, 9, 10].map(|place| arguments.length(place));
+            let sense = behind(arguments, 7).filter(|sense| *sense != SpindleRequest::Off);
+            let sense = sense.ok_or_else(|| {
+                arguments.refuse("which way the spindle turns (SDIR) is not said")
+            })?;
             CycleHole {
+                turning: Some([sense, SpindleRequest::Oriented]),
                 kind: match lift == [0.0; 3] {
                     true => CycleKind::Bore,
                     false => CycleKind::BoreFine,

@@ -131,19 +131,20 @@ fn what_is_not_followed_is_refused() {
         ("vmc", "siemens", Corner, "M70\n", "error[spindle]"),
         ("vmc", "siemens", Corner, "M1=70\n", "error[spindle]"),
         ("vmc", "siemens", Corner, "M5\nSETMS(2)\nS3000 M3\n", "spindle 2 becomes the master"),
+        // Blocks that are run together behind it.
         (
             "vmc",
             "siemens",
             Corner,
-            "G0 SUPA Z0\nG1\n",
-            "a position of the machine while the tool's length",
+            "TRAORI\nX41\nX42\nX43\n",
+            "a transformation has begun or ended",
         ),
         ("vmc", "siemens", Corner, "G18\n", "the plane is another than when the tool's length"),
         ("vmc", "fagor", Corner, "G18\n", "the plane is another than when the tool's length"),
         ("vmc", "isg", Corner, "G19\n", "the plane is another than when the tool's length"),
         ("vmc", "siemens", Corner, "TRAORI(2)\n", "this is data set 2 of the control"),
         ("vmc", "siemens", Corner, "TRAORI(1,0,1,0)\n", "the direction of the tool in its"),
-        ("vmc", "siemens", Corner, "TRAFOOF\n", "a transformation has begun or ended"),
+        ("vmc", "siemens", Corner, "TRAORI\n", "a transformation has begun or ended"),
         ("vmc", "isg", Corner, "#KIN ID [3]\n", "which kinematics of the control"),
         ("vmc", "siemens", Corner, "CYCLE86(50,0,2,-12)\n", "which way the spindle turns (SDIR)"),
         ("osp-mill", "okuma", Corner, "M16\n", "is not run"),
@@ -241,6 +242,36 @@ fn smoothing_by_the_control_is_warned_of() {
         let run = judged("vmc", dialect, Ahead::Corner, "");
         assert!(!run.err.contains("smoothing"), "{dialect}: {}", run.err);
     }
+}
+
+/// A builder's parameter says whether the length counts there (MD 10760).
+#[test]
+fn a_position_of_the_machine_with_a_length_is_warned_of() {
+    for (line, told) in [("G0 SUPA Z20\nD1\n", true), ("G0 SUPA D0 Z20\nD1\n", false)] {
+        let run = judged("vmc", "siemens", Ahead::Corner, line);
+        assert_eq!(run.err.contains("warning[nc-machine]"), told, "{line}: {}", run.err);
+    }
+}
+
+/// An operation in polar interpolation, and the next: the offset is named again where the transformation has ended.
+#[test]
+fn the_work_offset_is_named_again_behind_polar_interpolation() {
+    const FACE: &str = "TLDATA/MILL,10.0,0,60.0,0,0\nLOAD/TOOL,1\nSPINDL/RPM,3000,CLW\nPPRINT OPERATION NAME: A\nRAPID\n\
+        GOTO/34.64102,0.00000,50.00000,0.00000,0.00000,1.00000\nRAPID\nGOTO/34.64102,0.00000,2.00000\nFEDRAT/300.0,MMPM\nGOTO/34.64102,0.00000,-4.00000\n\
+        GOTO/34.64102,20.00000,-4.00000\nGOTO/0.00000,40.00000,-4.00000\nGOTO/0.00000,40.00000,2.00000\nRAPID\nGOTO/0.00000,40.00000,50.00000\n\
+        GOHOME\nPPRINT OPERATION NAME: B\nRAPID\nGOTO/0.00000,0.00000,50.00000\nRAPID\n\
+        GOTO/0.00000,0.00000,2.00000\nFEDRAT/200.0,MMPM\nGOTO/0.00000,0.00000,-2.00000\nGOTO/0.00000,0.00000,2.00000\nRAPID\n\
+        GOTO/0.00000,0.00000,50.00000\nFINI\n";
+    let folder: TempDir = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.cls"), FACE).unwrap();
+    let own = ["-m", "lathe-xzc-polar", "--dialect", "siemens", "--tool-length", "0"];
+    let modes = ["mode.face.on=TRANSMIT", "mode.face.off=TRAFOOF", "mode.face.letter=Y"];
+    let modes: Vec<&str> = modes.iter().flat_map(|mode| ["--set", *mode]).collect();
+    let files = ["part.cls", "-o", "part.mpf", "--verify"];
+    let run = post_in(folder.path(), &[&own[..], &modes, &files].concat());
+    assert_eq!(run.code, 0, "{}", run.err);
+    let program = fs::read_to_string(folder.path().join("part.mpf")).unwrap();
+    assert!(program.matches("G54").count() > program.matches(" M6").count(), "{program}");
 }
 
 /// Numbers of levels and centres without a point, which a parameter of the control makes thousandths.

@@ -142,7 +142,7 @@ impl Unsaid<'_> {
         let line = self.report.lengthened?;
         let message = "a position of the machine while the tool's length is in force: whether it counts there is for the control's builder to say".to_owned();
         let help = "write D0 in the block or ahead of it";
-        Some(self.graded("nc-machine", message).help(help).at(self.at(line)))
+        Some(Diagnostic::warning("nc-machine", message).help(help).at(self.at(line)))
     }
 
     /// A cycle that no word of its own ends.

@@ -156,6 +156,11 @@ impl Lexicon {
         !matches!(self.language, Language::Names | Language::Rs274)
     }
 
+    /// Tolerances of smoothing are in mm in inch programs too.
+    pub(crate) fn smooths_in_mm(&self) -> bool {
+        self.writes.has(Capabilities::SMOOTHING_IN_MM)
+    }
+
     /// Where a transformation begins or ends, the work offset may end too: MD 10602 of Siemens says so.
     pub(crate) fn transformations_drop_frames(&self) -> bool {
         self.language == Language::Names
@@ -337,14 +342,15 @@ impl Lexicon {
         found.map_or_else(|| self.name(name), |(_, _, meaning)| WordMeaning::Means(*meaning))
     }
 
-    /// The number of a call that the dialect names with one: 2 of `TRAORI(2)`, 91 of `#KIN ID [91]`.
-    pub(crate) fn number_of_call(&self, name: &str) -> Option<f64> {
-        let number = |known: &String| {
-            let behind = known.strip_prefix(name)?.trim_start();
-            let inside = behind.strip_prefix(['(', '['])?.strip_suffix([')', ']'])?;
-            inside.trim().parse().ok()
+    /// The values of a call that the dialect names with some: 2 of `TRAORI(2)`, 91 of `#KIN ID [91]`; the first, if it names
+    /// none.
+    pub(crate) fn values_of_call(&self, name: &str) -> Vec<f64> {
+        let values = |known: &String| -> Option<Vec<f64>> {
+            let behind = known.get(known.find(name)? + name.len()..)?.trim_start();
+            let inside = behind.strip_prefix(['(', '['])?.split([')', ']']).next()?;
+            inside.split(',').map(|value| value.trim().parse().ok()).collect()
         };
-        self.names.keys().find_map(number)
+        self.names.keys().find_map(values).unwrap_or_else(|| vec![1.0])
     }
 
     /// A name that means this, the first of the alphabet.

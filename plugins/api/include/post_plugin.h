@@ -441,6 +441,8 @@ typedef struct {
 /* The tool's length goes along the axis across the plane in force, also where the plane changes behind the word
  * that put it on: along Y behind G18. */
 #define POST_WRITES_LENGTH_ACROSS_PLANE 0x0100000000000000u
+/* Tolerances of its smoothing are in mm in inch programs too. */
+#define POST_WRITES_SMOOTHING_IN_MM 0x0200000000000000u
 /* The program begins: header, units, safe state. */
 #define POST_EVENT_START 1u
 /* A remark for the operator (PPRINT, the names of operations). */

@@ -167,6 +167,8 @@ capabilities! {
     /// The tool's length goes along the axis across the plane in force, also where the plane changes behind the word that
     /// put it on: along Y behind G18.
     56 LENGTH_ACROSS_PLANE;
+    /// Tolerances of its smoothing are in mm in inch programs too.
+    57 SMOOTHING_IN_MM;
 }
 
 impl Capabilities {

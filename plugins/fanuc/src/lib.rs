@@ -120,7 +120,7 @@ const OPTIONS: &[OptionSpec] = iso_options![
 
 /// Numbers of parameters are those of the 30i, 31i, 32i (B-63950EN, B-64490EN).
 const RELIES: &[&str] = &[
-    "1008#0 ROA = 0: whole turns count; ROA = 1, #1 RAB = 0 for an axis with a range",
+    "1008#0 ROA = 0: whole turns count; 1 for a range (RAB = 0) or way = \"sign\" (RAB = 1)",
     "1403#5 HTG = 1: F of a helix is along the helix, not along its circle",
     "1401#1 LRP = 1: rapids go straight; with 0 the axes arrive one after the other",
     "5006#6 TOS: either; G53 has taken the length off before G49 cancels it",

@@ -107,6 +107,9 @@ impl Engine {
                 writes |= Capabilities::ARC_ZX | Capabilities::ARC_YZ;
             }
         }
+        if table.smoothing_in_mm {
+            writes |= Capabilities::SMOOTHING_IN_MM;
+        }
         if !self.arcs_off_xy {
             writes |= Capabilities::LENGTH_ACROSS_PLANE;
         }
@@ -173,8 +176,10 @@ impl Engine {
                 let found = own.find(|line| !other.lines().any(|known| known == *line));
                 found.unwrap_or("").to_owned()
             };
-            for kinematics in self.tcp_on.lines().filter(|line| line.starts_with("#KIN ID")) {
-                add(kinematics, Meaning::Nothing);
+            let lines = self.tcp_on.to_ascii_uppercase();
+            for kinematics in lines.lines().filter_map(|line| line.split_once("#KIN ID")) {
+                let number = kinematics.1.split_inclusive(']').next().unwrap_or_default();
+                add(&format!("#KIN ID {}", number.trim()), Meaning::Nothing);
             }
             add(&last(&self.tcp_on, &self.tcp_off), Meaning::TcpOn);
             add(&last(&self.tcp_off, &self.tcp_on), Meaning::TcpOff);

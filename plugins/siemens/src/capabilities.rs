@@ -21,7 +21,6 @@ impl Siemens {
             (upright && self.cycles.fine(), C::CYCLE_BORE_FINE),
             (upright && self.cycles.taps(), C::CYCLE_TAP.and(C::CYCLE_TAP_LEFT)),
             (upright && self.arcs_off_xy, C::ARC_ZX.and(C::ARC_YZ)),
-            (!self.arcs_off_xy, C::LENGTH_ACROSS_PLANE),
             (self.swivels, C::PLANE),
             (self.smoothing.known(), C::SMOOTHING),
             (self.vectors, C::TOOL_VECTOR),

@@ -1,7 +1,7 @@
 //! What events become that the engine has no words for.
 
 use post_iso::{Control, Engine};
-use post_plugin::{Compensation, Drilling, Event, Spindle};
+use post_plugin::{Compensation, Cycle, Drilling, Event, Spindle};
 
 use crate::Siemens;
 use crate::table::is_work_offset;
@@ -76,7 +76,7 @@ impl Siemens {
                 engine.motion.settle(out);
                 if self.rotary && self.tcp_active.set(false) {
                     engine.line(&self.tcp_off, out);
-                    engine.offset_may_be_off();
+                    self.offset_may_be_off(engine);
                 }
                 return Ok(false);
             }
@@ -176,14 +176,15 @@ impl Siemens {
             Event::OperationEnd => {}
             Event::Message { text } => engine.line(&message(text), out),
             Event::WorkOffset { number, .. } => {
-                self.offset = (Self::TABLE.offset.word)(number);
+                self.own_offset = false;
+                self.offset = (Self::TABLE.offset.word)(number).unwrap_or_default();
                 return Ok(false);
             }
             Event::Tcp { on } => {
                 let line = if on { &self.tcp_on } else { &self.tcp_off };
                 engine.line(line, out);
                 self.tcp_active.set(on);
-                engine.offset_may_be_off();
+                self.offset_may_be_off(engine);
                 engine.motion.axes.forget();
             }
             Event::Subprogram { number, name, .. } => {
@@ -199,10 +200,16 @@ impl Siemens {
                 engine.motion.moved_by_line();
             }
             Event::Literal { text } => {
-                if text.split_whitespace().any(is_work_offset) {
-                    self.offset = None;
+                if let Some(own) = text.split_whitespace().find(|word| is_work_offset(word)) {
+                    self.own_offset = true;
+                    self.offset = own.to_owned();
                 }
                 self.forget();
+                return Ok(false);
+            }
+            // Lines that begin and end polar and cylinder interpolation.
+            Event::Word { text } if text.contains(&self.tcp_off) => {
+                self.offset_may_be_off(engine);
                 return Ok(false);
             }
             _ => return Ok(false),
@@ -219,6 +226,13 @@ fn cuts(event: &Event<'_>) -> bool {
             | Event::Arc { .. }
             | Event::Spline { .. }
             | Event::Position { .. }
-            | Event::Cycle { .. }
-    )
+            | Event::Literal { .. }
+            | Event::Subprogram { .. }
+    ) || turned_by_cycle(event) == Some(false)
+}
+
+/// Whether a cycle has the spindle turn by itself; none of what is no cycle.
+fn turned_by_cycle(event: &Event<'_>) -> Option<bool> {
+    let &Event::Cycle { cycle, .. } = event else { return None };
+    Some(matches!(cycle, Cycle::Bore | Cycle::BoreFine | Cycle::Tap | Cycle::TapLeft))
 }

@@ -29,8 +29,12 @@ struct Siemens {
     /// Ahead of a program that is transferred by cable; empty: none.
     header: String,
     edge: i64,
-    /// The work offset in force; none where a line of the user's own may have named another.
-    offset: Option<String>,
+    /// The work offset in force.
+    offset: String,
+    /// A line of the user's own has named it.
+    own_offset: bool,
+    /// A transformation may have ended it.
+    offset_off: bool,
     tool_names: bool,
     /// Names of the program's tools by their numbers, as far as they are known ahead.
     names: Vec<(u32, String)>,
@@ -98,7 +102,9 @@ impl Control for Siemens {
                 false => String::new(),
             },
             edge: setup.integer("edge"),
-            offset: Some(setup.text("work_offset").to_owned()),
+            offset: setup.text("work_offset").to_owned(),
+            own_offset: false,
+            offset_off: false,
             tool_names: setup.flag("tool_names"),
             names: tools.iter().map(|tool| (tool.number, tool.name.to_owned())).collect(),
             tcp: setup.tcp,

@@ -24,6 +24,12 @@ impl Siemens {
         }
     }
 
+    /// A transformation has ended, and perhaps the work offset: it is named again ahead of the next position.
+    pub(crate) fn offset_may_be_off(&mut self, engine: &mut Engine) {
+        self.offset_off = true;
+        engine.offset_may_be_off();
+    }
+
     /// The edge of the tool, unless it is in force.
     pub(crate) fn length_on(&mut self, engine: &mut Engine, out: &mut String) {
         if self.length.set(true) {
@@ -56,6 +62,10 @@ impl Siemens {
         engine: &mut Engine,
         out: &mut String,
     ) -> Result<(), String> {
+        // The engine leaves it to the user.
+        if std::mem::take(&mut self.offset_off) && self.own_offset {
+            engine.line(&self.offset, out);
+        }
         match plane_first || self.tcp || self.tilted {
             true => engine.write(&Event::Turn { words }, out)?,
             // All axes go at once.
@@ -66,9 +76,7 @@ impl Siemens {
         if self.tcp && !self.tilted && self.tcp_active.set(true) {
             engine.line(&self.tcp_on, out);
             // Whether a transformation that begins keeps the frames is a machine datum.
-            if let Some(offset) = &self.offset {
-                engine.line(offset, out);
-            }
+            engine.line(&self.offset, out);
             self.vector.forget();
         }
         if plane_first {
@@ -221,7 +229,7 @@ impl Siemens {
     pub(crate) fn end_call(&mut self, engine: &mut Engine, out: &mut String) {
         if let Some(called) = self.called.take() {
             engine.line("MCALL", out);
-            self.oriented |= called.starts_with("MCALL CYCLE86");
+            self.oriented = called.starts_with("MCALL CYCLE86");
         }
     }
 

@@ -8,11 +8,15 @@ pub(crate) fn vocabulary(tcp_on: &str, tcp_off: &str) -> Vec<VocabularyWord> {
     // ORIMKS after TRAORI says how, not that.
     let first = |lines: &str| lines.lines().next().unwrap_or_default().trim().to_owned();
     let own = [(first(tcp_on), Meaning::TcpOn), (first(tcp_off), Meaning::TcpOff)];
+    // `TRAORI(2)`: which of the control's transformations it is.
+    let numbered = tcp_on.find("TRAORI(").map(|at| {
+        word(tcp_on[at..].split_inclusive(')').next().unwrap_or_default(), Meaning::TcpOn)
+    });
     let own = own.map(|(text, meaning)| word(&text, meaning));
     let offsets = (505..=599).map(|number| word(&format!("G{number}"), Meaning::WorkOffset));
     let mut words: Vec<VocabularyWord> =
         WORDS.iter().map(|(text, meaning)| word(text, *meaning)).chain(offsets).collect();
-    for word in own {
+    for word in own.into_iter().chain(numbered) {
         if !word.word.is_empty() && !words.contains(&word) {
             words.push(word);
         }

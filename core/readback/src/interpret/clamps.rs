@@ -6,6 +6,9 @@ use post_machine::kinematics::Joints;
 use super::block::m_number;
 use super::state::ControlState;
 
+/// An axis that goes no farther than this, mm or rad, stands: a turn away its angle is another number.
+const STILL: f64 = 1e-9;
+
 /// Which axes are clamped, as bits of their places in the machine file.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ClampState {
@@ -42,8 +45,9 @@ impl ControlState {
     pub(super) fn end_clamped_block(&mut self, before: &Joints) {
         let ClampState { held, clamped } = self.clamps;
         self.clamps = ClampState { held: held | clamped, clamped: 0 };
-        let moved =
-            |place: &usize| held >> place & 1 == 1 && self.at.joints[*place] != before[*place];
+        let moved = |place: &usize| {
+            held >> place & 1 == 1 && libm::fabs(self.at.joints[*place] - before[*place]) > STILL
+        };
         let Some(place) = (0..self.machine.axes.len()).find(moved) else { return };
         let name = &self.machine.axes[place].name;
         self.report.moved_clamped.get_or_insert_with(|| (self.line, name.clone()));

@@ -336,6 +336,7 @@ impl ControlState {
             }
         }
         self.said = said;
+        self.clamps = super::clamps::ClampState::default();
         // Of its own axes the program is to say where they stand, too.
         self.fed = false;
         self.axes = AxisLetters::new(&machine);

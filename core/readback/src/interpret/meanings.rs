@@ -30,10 +30,11 @@ impl ControlState {
                     None => self.begin_wrap(None, 1.0, "its word"),
                 };
             }
-            Meaning::TcpOn => self.modal.frame_dropped = self.lexicon.transformations_drop_frames(),
+            Meaning::TcpOn => self.drop_frame(true),
             // One word ends all transformations of some controls.
             Meaning::TcpOff => {
-                self.modal.frame_dropped = self.lexicon.transformations_drop_frames();
+                let transforms = self.state.tcp || self.face.is_some() || self.state.wrap.is_some();
+                self.drop_frame(transforms);
                 self.end_face()?;
                 self.end_wrap()?;
             }
@@ -120,6 +121,13 @@ impl ControlState {
             _ => {}
         }
         Ok(())
+    }
+
+    /// A transformation begins, or ends if one is in force: the work offset may have ended with that.
+    fn drop_frame(&mut self, changes: bool) {
+        self.modal.frame_dropped |= changes
+            && self.state.work_offset.is_some()
+            && self.lexicon.transformations_drop_frames();
     }
 
     /// The level to which cycles return: Z of G71, which moves nothing.

@@ -81,12 +81,12 @@ impl ControlState {
         name: &str,
         values: &[Option<f64>],
     ) -> Result<(), Box<Diagnostic>> {
+        let known = self.lexicon.values_of_call(name);
         let number = values.first().copied().flatten().unwrap_or(1.0);
-        let lack = unlike(number, self.lexicon.number_of_call(name));
-        let turned = values
-            .iter()
-            .skip(1)
-            .any(Option::is_some)
+        let lack = unlike(number, known.first().copied());
+        let others = || values.iter().skip(1).map(|value| value.unwrap_or(0.0));
+        let turned = others().count() > 0 && !others().eq(known.iter().skip(1).copied());
+        let turned = turned
             .then(|| "the direction of the tool in its parentheses is not followed".to_owned());
         match lack.or(turned) {
             Some(lack) => Err(self.refuse("nc-mode", format!("{name} begins, and {lack}"))),

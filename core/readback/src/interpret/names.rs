@@ -358,18 +358,11 @@ impl ControlState {
             Some(Some(NcValue::Text(text))) => text.trim().parse().ok(),
             _ => self.argument(arguments, 0)?,
         };
-        let known = self.lexicon.number_of_call("#KIN ID");
-        if number.is_some() && number == known {
+        let known = self.lexicon.values_of_call("#KIN ID");
+        if number.is_some_and(|number| known == [number]) {
             return Ok(());
         }
-        let message = match known {
-            Some(known) => format!(
-                "these are not kinematics {known} of the control, of which the machine file tells"
-            ),
-            None => {
-                "which kinematics of the control the machine file tells of is not said".to_owned()
-            }
-        };
+        let message = "which kinematics of the control the machine file tells of is not said, or these are others";
         let help = "the lines of `tcp_on` name it: [\"#KIN ID [1]\", …]";
         Err(self.placed(Diagnostic::error("nc-mode", message).help(help)).boxed())
     }
@@ -433,9 +426,7 @@ impl ControlState {
                     ),
                     _ => None,
                 };
-                // ISG's is in mm in an inch program too.
-                let in_mm = matches!(arguments.first(), Some(Some(NcValue::Text(words))) if words.contains("PATH_DEV"));
-                let unit = if in_mm { 1.0 } else { self.modal.unit };
+                let unit = if self.lexicon.smooths_in_mm() { 1.0 } else { self.modal.unit };
                 let tolerance = tolerance.map(|tolerance| tolerance * unit);
                 if self.lexicon.language() == Language::Names {
                     let turn = self.turn_of_cycle(arguments)?;

@@ -71,7 +71,8 @@ impl ControlState {
             && self.spline.is_none()
             && self.cycles.are_off()
             && self.clamps.are_off()
-            && !self.length_goes_elsewhere();
+            && !modal.frame_dropped
+            && (self.report.length_across.is_some() || !self.length_goes_elsewhere());
         let plain = straight
             && self.fed
             && self.has_begun()

@@ -33,27 +33,40 @@ impl Ahead {
     }
 }
 
-/// The part posted in a dialect on a mill, judged with `lines` put in.
-fn judged(machine: &str, dialect: &str, ahead: Ahead, lines: &str) -> Run {
+/// What `verify` says of a CL file's program, posted in a dialect, after `change`.
+fn rewritten(machine: &str, dialect: &str, cl: &str, change: impl Fn(&str) -> String) -> Run {
     let folder: TempDir = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("part.cls"), PART).unwrap();
+    fs::write(folder.path().join("part.cls"), cl).unwrap();
     let own = ["-m", machine, "--tool-length", "100", "--dialect", dialect];
     let run = post_in(folder.path(), &[&own[..], &["part.cls", "-o", "part.nc"]].concat());
     assert_eq!(run.code, 0, "{dialect}: {}", run.err);
     let right = fs::read_to_string(folder.path().join("part.nc")).unwrap();
-    let (mut wrong, mut put) = (String::new(), false);
-    for block in right.lines() {
-        if !put && ahead.is_it(block) {
-            wrong.push_str(lines);
-            put = true;
-        }
-        wrong.push_str(block);
-        wrong.push('\n');
-    }
-    assert!(put, "{dialect}: {right}");
-    fs::write(folder.path().join("part.nc"), wrong).unwrap();
+    fs::write(folder.path().join("part.nc"), change(&right)).unwrap();
     let verify = [&["verify", "part.nc", "--against", "part.cls", "--posted"][..], &own].concat();
     post_in(folder.path(), &verify)
+}
+
+/// The part posted in a dialect on a mill, judged with `lines` put in.
+fn judged(machine: &str, dialect: &str, ahead: Ahead, lines: &str) -> Run {
+    rewritten(machine, dialect, PART, |right| {
+        let (mut wrong, mut put) = (String::new(), false);
+        for block in right.lines() {
+            if !put && ahead.is_it(block) {
+                wrong.push_str(lines);
+                put = true;
+            }
+            wrong.push_str(block);
+            wrong.push('\n');
+        }
+        assert!(put, "{dialect}: {right}");
+        wrong
+    })
+}
+
+/// A program without the last `word` in it.
+fn without(right: &str, word: &str) -> String {
+    let (ahead, behind) = right.split_at(right.rfind(word).unwrap());
+    format!("{ahead}{}", &behind[word.trim_end().len()..])
 }
 
 #[test]
@@ -309,19 +322,9 @@ fn an_axis_that_turns_in_its_clamp_is_told() {
         RAPID\nGOTO/0,120,150,0,0,1\nGOTO/0,120,100,0,0,1\nGOTO/20,120,100,0,0,1\nRAPID\nGOTO/20,120,150,0,0,1\n\
         RAPID\nGOTO/150,120,0,1,0,0\nGOTO/100,120,0,1,0,0\nGOTO/100,120,-20,1,0,0\nRAPID\nGOTO/150,120,-20,1,0,0\nFINI\n";
     for dialect in ["fanuc", "heidenhain"] {
-        let folder: TempDir = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("part.cls"), SIDES).unwrap();
-        let own = ["-m", "hmc-b-pallet", "--tool-length", "100", "--dialect", dialect];
-        let run = post_in(folder.path(), &[&own[..], &["part.cls", "-o", "part.nc"]].concat());
+        let run = rewritten("hmc-b-pallet", dialect, SIDES, str::to_owned);
         assert_eq!(run.code, 0, "{dialect}: {}", run.err);
-        let verify =
-            [&["verify", "part.nc", "--against", "part.cls", "--posted"][..], &own].concat();
-        let run = post_in(folder.path(), &verify);
-        assert_eq!(run.code, 0, "{dialect}: {}", run.err);
-        let right = fs::read_to_string(folder.path().join("part.nc")).unwrap();
-        let (ahead, behind) = right.split_at(right.rfind("M11").unwrap());
-        fs::write(folder.path().join("part.nc"), format!("{ahead}{}", &behind[3..])).unwrap();
-        let run = post_in(folder.path(), &verify);
+        let run = rewritten("hmc-b-pallet", dialect, SIDES, |right| without(right, "M11"));
         assert_eq!(run.code, 1, "{dialect}: {}{}", run.out, run.err);
         assert!(run.err.contains("error[nc-clamp]: B moves"), "{dialect}: {}", run.err);
     }
@@ -333,19 +336,13 @@ fn boring_leaves_the_spindle_oriented() {
     const BORED: &str = "UNITS/MM\nLOADTL/1\nSPINDL/800,CLW\nRAPID\nGOTO/0,0,20\n\
         CYCLE/BORE,DRAG,FEDTO,-12,MMPM,100,RAPTO,5\nGOTO/10,10,0\nGOTO/20,10,0\nCYCLE/OFF\n\
         FEDRAT/200,MMPM\nGOTO/30,0,5\nGOTO/30,0,-1\nGOTO/40,0,-1\nRAPID\nGOTO/40,0,20\nFINI\n";
-    let folder: TempDir = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("part.cls"), BORED).unwrap();
-    let own = ["-m", "vmc", "--tool-length", "100", "--dialect", "siemens"];
-    let run = post_in(folder.path(), &[&own[..], &["part.cls", "-o", "part.nc"]].concat());
+    let run = rewritten("vmc", "siemens", BORED, str::to_owned);
     assert_eq!(run.code, 0, "{}", run.err);
-    let verify = [&["verify", "part.nc", "--against", "part.cls", "--posted"][..], &own].concat();
-    let run = post_in(folder.path(), &verify);
-    assert_eq!(run.code, 0, "{}", run.err);
-    let right = fs::read_to_string(folder.path().join("part.nc")).unwrap();
-    let (ahead, behind) = right.split_at(right.rfind("M3\n").unwrap());
-    assert!(ahead.contains("MCALL CYCLE86"), "{right}");
-    fs::write(folder.path().join("part.nc"), format!("{ahead}{}", &behind[2..])).unwrap();
-    let run = post_in(folder.path(), &verify);
+    let run = rewritten("vmc", "siemens", BORED, |right| {
+        let wrong = without(right, "M3\n");
+        assert!(wrong.contains("MCALL CYCLE86"), "{right}");
+        wrong
+    });
     assert_eq!(run.code, 1, "{}{}", run.out, run.err);
     assert!(run.err.contains("error[spindle]"), "{}", run.err);
 }

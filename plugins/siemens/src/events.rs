@@ -218,21 +218,18 @@ impl Siemens {
     }
 }
 
-/// The spindle turns in it, or stands ahead of it that does.
+/// The spindle must turn for it, and nothing in it has it turn: boring and tapping cycles do that themselves.
 fn cuts(event: &Event<'_>) -> bool {
-    matches!(
-        event,
+    match *event {
         Event::Linear { .. }
-            | Event::Arc { .. }
-            | Event::Spline { .. }
-            | Event::Position { .. }
-            | Event::Literal { .. }
-            | Event::Subprogram { .. }
-    ) || turned_by_cycle(event) == Some(false)
-}
-
-/// Whether a cycle has the spindle turn by itself; none of what is no cycle.
-fn turned_by_cycle(event: &Event<'_>) -> Option<bool> {
-    let &Event::Cycle { cycle, .. } = event else { return None };
-    Some(matches!(cycle, Cycle::Bore | Cycle::BoreFine | Cycle::Tap | Cycle::TapLeft))
+        | Event::Arc { .. }
+        | Event::Spline { .. }
+        | Event::Position { .. }
+        | Event::Literal { .. }
+        | Event::Subprogram { .. } => true,
+        Event::Cycle { cycle, .. } => {
+            !matches!(cycle, Cycle::Bore | Cycle::BoreFine | Cycle::Tap | Cycle::TapLeft)
+        }
+        _ => false,
+    }
 }
